@@ -1,0 +1,1 @@
+//! The program `figurant`, as a library that tests can reach.

@@ -1,0 +1,2 @@
+//! The program `figurant`.
+fn main() {}

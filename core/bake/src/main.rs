@@ -1,0 +1,2 @@
+//! The bake program.
+fn main() {}

@@ -1,0 +1,180 @@
+//! What both engines read. Plain structs in view space ([`crate::base::space`]), `f32`.
+
+use std::ops::Range;
+use std::sync::Arc;
+
+use crate::library::mesh::Mesh;
+use crate::library::texture::Texture;
+
+/// One frame, ready to be drawn.
+#[derive(Clone, Debug, Default)]
+pub struct DrawList {
+    /// Picture size and projection.
+    pub view: View,
+    /// What is drawn, at most 65,534.
+    pub objects: Vec<DrawObject>,
+    /// Parts of objects: ranges of triangles with one material.
+    pub draws: Vec<Draw>,
+    /// Surfaces.
+    pub materials: Vec<Material>,
+    /// Textures that the materials name by index.
+    pub textures: Vec<Arc<Texture>>,
+    /// `view_from_model` of every joint of every skinned object: three rows of four.
+    pub palette: Vec<[[f32; 4]; 3]>,
+    /// Light in view space.
+    pub lights: Lights,
+    /// Linear scale from nits to the sensor's 0..1.
+    pub exposure: f32,
+    /// Side of the sun's shadow map in texels, a multiple of 64.
+    pub shadow_map_size: u32,
+    /// Samples per pixel: 1, 4 or 16.
+    pub samples: u32,
+}
+
+/// Picture size and projection: `x = cx + fx * X / -Z`, `y = cy - fy * Y / -Z`, depth `near / -Z`.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[repr(C)]
+pub struct View {
+    /// Pixels.
+    pub width: u32,
+    /// Pixels.
+    pub height: u32,
+    /// Focal length, pixels.
+    pub fx: f32,
+    /// Focal length, pixels.
+    pub fy: f32,
+    /// Principal point, pixels.
+    pub cx: f32,
+    /// Principal point, pixels.
+    pub cy: f32,
+    /// Metres.
+    pub near_m: f32,
+    /// Keeps the size a multiple of 16 bytes.
+    pub pad: u32,
+    /// Rows of the rotation view from world, for what is defined in world axes.
+    pub view_from_world: [[f32; 4]; 3],
+}
+
+/// A mesh that stands somewhere.
+#[derive(Clone, Debug)]
+pub struct DrawObject {
+    /// Its geometry.
+    pub mesh: Arc<Mesh>,
+    /// View from model: three rows of four. Unused for skinned meshes.
+    pub view_from_model: [[f32; 4]; 3],
+    /// Where its joints stand in the palette; empty for rigid meshes.
+    pub palette: Range<u32>,
+    /// Whether the camera may see it; what it may not see only casts shadows.
+    pub in_view: bool,
+    /// Whether it casts shadows.
+    pub casts_shadow: bool,
+    /// Shading may be done once a pixel for the whole object where its triangles meet smoothly.
+    pub smooth: bool,
+}
+
+/// Triangles of one object with one material.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Draw {
+    /// Index in [`DrawList::objects`].
+    pub object: u32,
+    /// Range of its mesh's triangles.
+    pub triangles: Range<u32>,
+    /// Index in [`DrawList::materials`].
+    pub material: u32,
+    /// Back faces are drawn too, their normals turned round.
+    pub double_sided: bool,
+}
+
+/// A metallic-roughness surface with up to four masked layers.
+///
+/// `albedo = hue_rotate(base_color * albedo_map)`, then for each channel k of the mask, in order,
+/// `albedo = mix(albedo, layers[k].rgb, mask[k])` and the same for roughness.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Material {
+    /// Linear.
+    pub base_color: [f32; 3],
+    /// sRGB texture, multiplies the base colour.
+    pub albedo_map: Option<u32>,
+    /// Linear texture, its red channel multiplies the albedo by `1 + detail_strength * (2 r - 1)`.
+    pub detail_map: Option<u32>,
+    /// See `detail_map`.
+    pub detail_strength: f32,
+    /// Repeats of the albedo, detail and normal maps over 0..1; the mask is not repeated.
+    pub uv_repeat: [f32; 2],
+    /// Rotation of the hue in HSV; 0 for none.
+    pub hue_offset_deg: f32,
+    /// Perceptual roughness, 0.04..1.
+    pub roughness: f32,
+    /// 0..1.
+    pub metallic: f32,
+    /// Linear texture of tangent-space normals.
+    pub normal_map: Option<u32>,
+    /// Factor on the normal map's x and y.
+    pub normal_strength: f32,
+    /// Linear texture of four masks.
+    pub mask: Option<u32>,
+    /// Linear colour and roughness of each masked layer.
+    pub layers: [[f32; 4]; 4],
+    /// Light that goes round the terminator, for skin: 0 none .. 0.5.
+    pub wrap: f32,
+}
+
+impl Default for Material {
+    fn default() -> Self {
+        Self {
+            base_color: [0.5; 3],
+            albedo_map: None,
+            detail_map: None,
+            detail_strength: 0.0,
+            uv_repeat: [1.0; 2],
+            hue_offset_deg: 0.0,
+            roughness: 0.7,
+            metallic: 0.0,
+            normal_map: None,
+            normal_strength: 1.0,
+            mask: None,
+            layers: [[0.0; 4]; 4],
+            wrap: 0.0,
+        }
+    }
+}
+
+/// Light in view space, in photometric units.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Lights {
+    /// The sun, when it is on.
+    pub sun: Option<Sun>,
+    /// Point lights that are on.
+    pub points: Vec<PointLight>,
+    /// Irradiance of a surface that faces the sky (world +Y), lux per channel.
+    pub sky_lux: [f32; 3],
+    /// Irradiance of a surface that faces the ground, lux per channel.
+    pub ground_lux: [f32; 3],
+    /// Luminance where nothing stands, nits per channel.
+    pub background_nits: [f32; 3],
+}
+
+/// A light at infinity.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sun {
+    /// Unit vector towards it, view space.
+    pub direction_to_sun: [f32; 3],
+    /// Illuminance per channel of a surface facing it.
+    pub color_lux: [f32; 3],
+    /// Whether it casts shadows.
+    pub shadow: bool,
+}
+
+/// A light at a point: `E = I / max(d, radius)^2 * clamp(1 - (d / range)^4, 0, 1)^2`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C)]
+pub struct PointLight {
+    /// View space, metres.
+    pub position: [f32; 3],
+    /// Metres.
+    pub range_m: f32,
+    /// Candela per channel.
+    pub color_cd: [f32; 3],
+    /// Metres.
+    pub radius_m: f32,
+}

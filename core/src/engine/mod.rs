@@ -1,0 +1,46 @@
+//! (draw list, pass plan) -> frame. Engines of equal rank behind one trait.
+//!
+//! An engine knows nothing of documents, labels or files. [`cpu`] is native Rust: tiles over
+//! threads, eight-wide portable SIMD, the same bytes on every machine.
+
+use crate::draw::DrawList;
+use crate::plan::{Frame, PassPlan, StageTimes};
+
+pub mod cpu;
+
+/// What can go wrong while a frame is rendered.
+#[derive(Debug, thiserror::Error)]
+pub enum EngineError {
+    /// A number in the draw list is NaN or infinite.
+    #[error("object {object}: {what} is not finite; the scene that led to it is at fault")]
+    NotFinite {
+        /// Index in the draw list's objects, or `u32::MAX` for the view and the lights.
+        object: u32,
+        /// Which number.
+        what: &'static str,
+    },
+    /// The draw list asks for more than the engine can do.
+    #[error("{what} is {got}, at most {limit} can be drawn")]
+    TooLarge {
+        /// Which number.
+        what: &'static str,
+        /// What was asked for.
+        got: u64,
+        /// What is possible.
+        limit: u64,
+    },
+}
+
+/// Renders draw lists. One engine is used by one thread at a time and keeps its buffers.
+pub trait Engine: Send {
+    /// Runs the plan's passes and hands back the buffers they write.
+    ///
+    /// # Errors
+    /// When the draw list holds a number that is not finite, or more than the engine can draw.
+    fn render(
+        &mut self,
+        list: &DrawList,
+        plan: &PassPlan,
+        times: &mut StageTimes,
+    ) -> Result<Frame, EngineError>;
+}

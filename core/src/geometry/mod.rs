@@ -1,0 +1,1 @@
+//! Persons, garments, skeletons and primitive shapes as meshes.

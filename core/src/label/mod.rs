@@ -1,0 +1,1 @@
+//! Frame + scene + draw list -> annotations.

@@ -1,0 +1,1 @@
+//! (document, catalogue, frame) -> scene.

@@ -1,0 +1,72 @@
+//! The pinhole camera, and the projection that every label goes through.
+
+use glam::{DMat3, DQuat, DVec2, DVec3};
+use serde::{Deserialize, Serialize};
+
+use crate::base::space::CV_FROM_VIEW;
+
+/// A pinhole camera with square pixels and its principal point in the middle.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Camera {
+    /// Picture width in pixels.
+    pub width: u32,
+    /// Picture height in pixels.
+    pub height: u32,
+    /// Angle between the rays through the middle of the top and bottom edge, degrees.
+    pub fov_vertical_deg: f64,
+    /// Where it stands, metres, world.
+    pub position_m: DVec3,
+    /// World from view; at identity it looks down -Z with +Y up.
+    pub rotation: DQuat,
+    /// Distance of the near plane along the view axis.
+    pub near_m: f64,
+}
+
+impl Camera {
+    /// Focal length in pixels, the same for both axes: `H / 2 / tan(fov / 2)`.
+    #[must_use]
+    pub fn focal_px(&self) -> f64 {
+        f64::from(self.height) * 0.5 / libm::tan(self.fov_vertical_deg.to_radians() * 0.5)
+    }
+
+    /// The principal point, pixels.
+    #[must_use]
+    pub fn center_px(&self) -> DVec2 {
+        DVec2::new(f64::from(self.width) * 0.5, f64::from(self.height) * 0.5)
+    }
+
+    /// The intrinsic matrix `K` of [`crate::base::space`], row by row.
+    #[must_use]
+    pub fn intrinsics(&self) -> [[f64; 3]; 3] {
+        let (f, c) = (self.focal_px(), self.center_px());
+        [[f, 0.0, c.x], [0.0, f, c.y], [0.0, 0.0, 1.0]]
+    }
+
+    /// A world point in view space.
+    #[must_use]
+    pub fn view_from_world(&self, p_in_world: DVec3) -> DVec3 {
+        self.rotation.inverse() * (p_in_world - self.position_m)
+    }
+
+    /// `R` of `X_cv = R X_world + t`.
+    #[must_use]
+    pub fn cv_from_world_rotation(&self) -> DMat3 {
+        CV_FROM_VIEW * DMat3::from_quat(self.rotation.inverse())
+    }
+
+    /// `t` of `X_cv = R X_world + t`.
+    #[must_use]
+    pub fn cv_from_world_translation(&self) -> DVec3 {
+        -(self.cv_from_world_rotation() * self.position_m)
+    }
+
+    /// Image position of a view-space point, or nothing if it lies not in front of the camera.
+    #[must_use]
+    pub fn project(&self, p_in_view: DVec3) -> Option<DVec2> {
+        let distance = -p_in_view.z;
+        (distance > 0.0).then(|| {
+            let f = self.focal_px() / distance;
+            self.center_px() + DVec2::new(p_in_view.x * f, -p_in_view.y * f)
+        })
+    }
+}

@@ -1,0 +1,3 @@
+//! No layer imports upwards.
+#[test]
+fn t() {}
