@@ -1,5 +1,212 @@
 //! Scene -> [`DrawList`]: everything in view space and single precision, ready for an engine.
+//!
+//! Here a scene meets its geometry: persons are shaped, dressed and posed, levels of detail are
+//! chosen by their projected error, and what neither shows nor casts a visible shadow is left out.
+//! Differences to the camera are taken in `f64` before anything is narrowed to `f32`. Pixels and
+//! labels are decided elsewhere.
+//!
+//! | file | what it does |
+//! |---|---|
+//! | [`abi`] | the structs both engines read |
+//! | [`frustum`] | what the camera may see, and whose shadow it may see |
+//! | `lights` | lights in view space |
+//! | `objects` | walls, floors, occluders |
+//! | `people` | persons: shape, pose, level of detail, keypoints |
+//! | `surfaces` | materials and the textures they name |
 
 pub mod abi;
+pub mod frustum;
+mod lights;
+mod objects;
+mod people;
+mod surfaces;
+
+use glam::{DAffine3, DMat3, DVec3};
 
 pub use abi::DrawList;
+
+use crate::base::space::exposure_from_ev100;
+use crate::library::Library;
+use crate::library::texture::TextureError;
+use crate::scene::{Camera, Scene};
+use frustum::Frustum;
+
+/// A draw list, and what in it belongs to whom.
+#[derive(Clone, Debug, Default)]
+pub struct Drawn {
+    /// What the engine draws.
+    pub list: DrawList,
+    /// For each of the scene's objects its index in the draw list, if it is drawn.
+    pub objects: Vec<Option<u32>>,
+    /// The scene's people, in order.
+    pub people: Vec<DrawnPerson>,
+}
+
+/// What is known of a person once shaped and posed, whether drawn or not.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DrawnPerson {
+    /// Index in the scene's people.
+    pub person: usize,
+    /// Id in instance maps: the person's slot plus one.
+    pub instance: u16,
+    /// Index in the draw list's objects, if drawn.
+    pub object: Option<u32>,
+    /// Posed COCO-17 keypoints, metres, view space.
+    pub keypoints_in_view: [DVec3; 17],
+    /// How far in front of each keypoint the surface of its own limb may lie, metres.
+    pub keypoint_tolerance_m: [f64; 17],
+    /// Body mass at scale 1, kilograms.
+    pub mass_kg: f64,
+}
+
+/// What the frame is drawn for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DrawOptions {
+    /// Somebody wants pixels or labels that come from pixels; otherwise only keypoints are posed.
+    pub raster: bool,
+    /// Materials, lights and casters of shadows are wanted.
+    pub shading: bool,
+    /// Samples a pixel: 1, 4 or 16.
+    pub samples: u32,
+    /// Side of the sun's shadow map, texels.
+    pub shadow_map_size: u32,
+    /// Largest error of a level of detail, pixels.
+    pub lod_error_px: f64,
+}
+
+/// A scene that cannot be drawn.
+#[derive(Debug, thiserror::Error)]
+pub enum DrawError {
+    /// A texture that the scene names cannot be had.
+    #[error(transparent)]
+    Texture(#[from] TextureError),
+    /// The scene names a clip that the library does not hold.
+    #[error("person {slot}: pose.clip: no clip '{clip}' in the library; it has {known}")]
+    UnknownClip {
+        /// The person's slot.
+        slot: u32,
+        /// What was asked for.
+        clip: String,
+        /// What there is.
+        known: String,
+    },
+}
+
+/// Draws a scene.
+///
+/// # Errors
+/// When the scene names an asset that the library does not hold or cannot read.
+pub fn draw(scene: &Scene, library: &Library, options: &DrawOptions) -> Result<Drawn, DrawError> {
+    let mut drawing = Drawing::new(scene, library, *options);
+    if options.shading {
+        drawing.drawn.list.lights = lights::in_view(scene, &drawing.view_from_world);
+    }
+    if options.raster {
+        objects::add(&mut drawing)?;
+    }
+    people::add(&mut drawing)?;
+    Ok(drawing.drawn)
+}
+
+/// A draw list in the making.
+struct Drawing<'a> {
+    scene: &'a Scene,
+    library: &'a Library,
+    options: DrawOptions,
+    view_from_world: DAffine3,
+    frustum: Frustum,
+    /// View space, towards the sun, when its shadows are wanted.
+    shadow_direction: Option<DVec3>,
+    surfaces: surfaces::Surfaces,
+    drawn: Drawn,
+}
+
+impl<'a> Drawing<'a> {
+    fn new(scene: &'a Scene, library: &'a Library, options: DrawOptions) -> Self {
+        let view_from_world = view_from_world(&scene.camera);
+        let sun = scene.lights.sun.as_ref().filter(|s| s.shadow && options.shading);
+        let list = DrawList {
+            view: view(&scene.camera, &view_from_world),
+            exposure: exposure_from_ev100(scene.exposure_ev100) as f32,
+            shadow_map_size: options.shadow_map_size,
+            samples: options.samples,
+            ..DrawList::default()
+        };
+        Self {
+            scene,
+            library,
+            options,
+            view_from_world,
+            frustum: Frustum::new(&scene.camera),
+            shadow_direction: sun.map(|s| view_from_world.transform_vector3(s.direction_to_sun)),
+            surfaces: surfaces::Surfaces::default(),
+            drawn: Drawn { list, ..Drawn::default() },
+        }
+    }
+
+    /// Whether a sphere may be seen, and whether its shadow may be.
+    fn relevance(&self, center_in_view: DVec3, radius_m: f64) -> Relevance {
+        Relevance {
+            in_view: self.frustum.sees(center_in_view, radius_m),
+            casts_shadow: self
+                .shadow_direction
+                .is_some_and(|d| self.frustum.sees_shadow(center_in_view, radius_m, d)),
+        }
+    }
+}
+
+/// What something contributes to a picture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Relevance {
+    in_view: bool,
+    casts_shadow: bool,
+}
+
+impl Relevance {
+    const fn any(self) -> bool {
+        self.in_view || self.casts_shadow
+    }
+}
+
+fn view_from_world(camera: &Camera) -> DAffine3 {
+    let rotation = DMat3::from_quat(camera.rotation.inverse());
+    DAffine3::from_mat3_translation(rotation, -(rotation * camera.position_m))
+}
+
+fn view(camera: &Camera, view_from_world: &DAffine3) -> abi::View {
+    let (focal, center) = (camera.focal_px() as f32, camera.center_px());
+    abi::View {
+        width: camera.width,
+        height: camera.height,
+        fx: focal,
+        fy: focal,
+        cx: center.x as f32,
+        cy: center.y as f32,
+        near_m: camera.near_m as f32,
+        pad: 0,
+        view_from_world: rows(view_from_world),
+    }
+}
+
+/// An affine map as three rows of four, narrowed to `f32`.
+#[must_use]
+pub fn rows(b_from_a: &DAffine3) -> [[f32; 4]; 3] {
+    let m = b_from_a.matrix3;
+    let t = b_from_a.translation.to_array();
+    std::array::from_fn(|r| {
+        let row = m.row(r);
+        [row.x as f32, row.y as f32, row.z as f32, t[r] as f32]
+    })
+}
+
+#[cfg(test)]
+pub(crate) fn empty_object() -> abi::DrawObject {
+    abi::DrawObject {
+        mesh: std::sync::Arc::default(),
+        view_from_model: rows(&DAffine3::IDENTITY),
+        palette: 0..0,
+        in_view: true,
+        casts_shadow: false,
+        smooth: true,
+    }
+}

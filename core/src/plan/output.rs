@@ -49,10 +49,11 @@ impl Output {
     pub const fn needs(self) -> &'static [Buffer] {
         match self {
             Self::Rgb => &[Buffer::Picture],
-            Self::Box2d => &[Buffer::ObjectSamples],
+            // A box contains its mask, so both are read.
+            Self::Box2d => &[Buffer::ObjectSamples, Buffer::ObjectIds],
             // Visibility is judged from the same raster as the picture.
             Self::Keypoints => &[Buffer::Points, Buffer::ObjectIds, Buffer::Depth],
-            Self::Instance | Self::Semantic => &[Buffer::ObjectIds, Buffer::ObjectSamples],
+            Self::Instance | Self::Semantic => &[Buffer::ObjectIds],
         }
     }
 }

@@ -155,3 +155,11 @@ pub struct Material {
     /// Strength of the texture's own normal map, 0 for none.
     pub normal_strength: f64,
 }
+
+impl Shape {
+    /// Whether all its faces meet without hard edges.
+    #[must_use]
+    pub const fn is_smooth(self) -> bool {
+        matches!(self, Self::Sphere | Self::Capsule | Self::Torus)
+    }
+}

@@ -1,0 +1,176 @@
+//! Persons: shaped, posed and placed, at the level of detail their distance asks for.
+//!
+//! A person's few always-needed vertices (joints, keypoints, contact points) are evaluated first;
+//! whoever neither shows nor casts a visible shadow is never dressed.
+
+use std::sync::Arc;
+
+use glam::{DAffine3, DVec3};
+use rayon::prelude::*;
+
+use super::objects::world_from_model;
+use super::{DrawError, DrawnPerson, Drawing, Relevance, abi, rows};
+use crate::geometry::person::{self, Dressed, RestBody};
+use crate::geometry::points;
+use crate::geometry::pose::{self, PosedSkeleton};
+use crate::library::Library;
+use crate::scene::Person;
+
+/// How much of a limb's thickness may lie in front of a keypoint before it counts as hidden: limbs
+/// are seen at a slant, and clothes stand off.
+const LIMB_SLACK: f64 = 1.6;
+/// Cloth and hair in front of the skin, metres at scale 1.
+const COVER_M: f64 = 0.025;
+/// Skin, hair and clothes reach this far beyond the joints' sphere at most, as a share of stature.
+const FLESH_SHARE: f64 = 0.17;
+
+/// A person whose bones are settled.
+struct Posed<'a> {
+    person: &'a Person,
+    body: RestBody,
+    skeleton: PosedSkeleton,
+    view_from_model: DAffine3,
+    scale: f64,
+    center_in_view: DVec3,
+    radius_m: f64,
+}
+
+/// Adds the scene's people: keypoints of all, meshes of those that matter to the picture.
+pub fn add(drawing: &mut Drawing) -> Result<(), DrawError> {
+    let view_from_world = drawing.view_from_world;
+    let (scene, library) = (drawing.scene, drawing.library);
+    let posed: Vec<Posed> = scene
+        .people
+        .par_iter()
+        .map(|person| pose_one(person, library, &view_from_world))
+        .collect::<Result<_, _>>()?;
+    let relevances: Vec<Relevance> = posed.iter().map(|p| relevance(drawing, p)).collect();
+    let dressed: Vec<Option<Dressed>> = {
+        let drawing = &*drawing;
+        let level = |(p, r): (&Posed, &Relevance)| {
+            r.any().then(|| person::dress(&library.figure, p.person, &p.body, level_of_detail(drawing, p, *r)))
+        };
+        posed.par_iter().zip(&relevances).map(level).collect()
+    };
+    for (index, ((posed, relevance), dressed)) in
+        posed.iter().zip(&relevances).zip(dressed).enumerate()
+    {
+        let object = dressed.map(|d| add_mesh(drawing, posed, *relevance, d)).transpose()?;
+        drawing.drawn.people.push(describe(index, posed, object));
+    }
+    Ok(())
+}
+
+fn pose_one<'a>(
+    person: &'a Person,
+    library: &Library,
+    view_from_world: &DAffine3,
+) -> Result<Posed<'a>, DrawError> {
+    let clip = library.clips.get(&person.pose.clip).ok_or_else(|| DrawError::UnknownClip {
+        slot: person.slot,
+        clip: person.pose.clip.clone(),
+        known: library.clips.ids().collect::<Vec<_>>().join(", "),
+    })?;
+    let body = person::rest_body(&library.figure, person);
+    let mut skeleton =
+        pose::retarget(&clip.sample(person.pose.phase), &body.joints_m, person.pose.mirrored);
+    skeleton.ground(&body.ground);
+    let view_from_model = *view_from_world * world_from_model(&person.placement);
+    let scale = person.placement.scale.abs().max_element();
+    let (center, reach_m) = joint_sphere(&skeleton, &body);
+    Ok(Posed {
+        center_in_view: view_from_model.transform_point3(center),
+        radius_m: (reach_m + FLESH_SHARE * body.stature_m) * scale,
+        person,
+        body,
+        skeleton,
+        view_from_model,
+        scale,
+    })
+}
+
+/// Centre and radius of a sphere round all posed joints, model space.
+fn joint_sphere(skeleton: &PosedSkeleton, body: &RestBody) -> (DVec3, f64) {
+    let joints: Vec<DVec3> = skeleton
+        .model_from_rest
+        .iter()
+        .zip(&body.joints_m)
+        .map(|(m, &head)| m.transform_point3(head))
+        .collect();
+    let low = joints.iter().copied().fold(DVec3::INFINITY, DVec3::min);
+    let high = joints.iter().copied().fold(DVec3::NEG_INFINITY, DVec3::max);
+    let center = (low + high) * 0.5;
+    (center, joints.iter().map(|j| j.distance(center)).fold(0.0, f64::max))
+}
+
+fn relevance(drawing: &Drawing, posed: &Posed) -> Relevance {
+    if !drawing.options.raster {
+        return Relevance { in_view: false, casts_shadow: false };
+    }
+    drawing.relevance(posed.center_in_view, posed.radius_m)
+}
+
+/// The coarsest level whose error stays below the wanted one at the person's nearest point; who
+/// only casts a shadow gets the coarsest of all.
+fn level_of_detail(drawing: &Drawing, posed: &Posed, relevance: Relevance) -> usize {
+    let errors_m = drawing.library.figure.lod_errors_m();
+    if !relevance.in_view {
+        return errors_m.len() - 1;
+    }
+    let nearest_m = (-posed.center_in_view.z - posed.radius_m)
+        .max(posed.center_in_view.length() - posed.radius_m)
+        .max(drawing.scene.camera.near_m);
+    let px_per_m = drawing.scene.camera.focal_px() / nearest_m * posed.scale;
+    let fine_enough = |error_m: f64| error_m * px_per_m <= drawing.options.lod_error_px;
+    errors_m.iter().rposition(|&e| fine_enough(e)).unwrap_or(0)
+}
+
+fn add_mesh(
+    drawing: &mut Drawing,
+    posed: &Posed,
+    relevance: Relevance,
+    dressed: Dressed,
+) -> Result<u32, DrawError> {
+    let list = &mut drawing.drawn.list;
+    let index = list.objects.len() as u32;
+    for part in &dressed.parts {
+        let material = if drawing.options.shading {
+            drawing.surfaces.of_person(&part.surface, drawing.library, list)?
+        } else {
+            drawing.surfaces.plain(list)
+        };
+        list.draws.push(abi::Draw {
+            object: index,
+            triangles: part.triangles.clone(),
+            material,
+            double_sided: part.double_sided,
+        });
+    }
+    let first = list.palette.len() as u32;
+    let bones = posed.skeleton.model_from_rest.iter();
+    list.palette.extend(bones.map(|m| rows(&(posed.view_from_model * *m))));
+    list.objects.push(abi::DrawObject {
+        mesh: Arc::new(dressed.mesh),
+        view_from_model: rows(&posed.view_from_model),
+        palette: first..list.palette.len() as u32,
+        in_view: relevance.in_view,
+        casts_shadow: relevance.casts_shadow,
+        smooth: true,
+    });
+    Ok(index)
+}
+
+fn describe(index: usize, posed: &Posed, object: Option<u32>) -> DrawnPerson {
+    let in_model = points::keypoints(&posed.body, &posed.skeleton);
+    DrawnPerson {
+        person: index,
+        instance: posed.person.slot as u16 + 1,
+        object,
+        keypoints_in_view: in_model.map(|p| posed.view_from_model.transform_point3(p)),
+        keypoint_tolerance_m: posed
+            .body
+            .keypoint_radius_m
+            .map(|r| (r * LIMB_SLACK + COVER_M) * posed.scale),
+        mass_kg: posed.body.mass_kg,
+    }
+}

@@ -1,0 +1,120 @@
+//! Materials and the textures they name: each texture stands once in a draw list.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use super::{DrawError, DrawList, abi};
+use crate::geometry::person::{Mask, Surface};
+use crate::library::Library;
+use crate::library::texture::Texture;
+use crate::scene;
+
+/// What has been put into a draw list so far.
+#[derive(Default)]
+pub struct Surfaces {
+    index_of_texture: BTreeMap<String, u32>,
+    plain: Option<u32>,
+}
+
+impl Surfaces {
+    /// A surface for frames that nobody shades.
+    pub fn plain(&mut self, list: &mut DrawList) -> u32 {
+        *self.plain.get_or_insert_with(|| push(list, abi::Material::default()))
+    }
+
+    /// The surface of a wall, floor or occluder.
+    pub fn of_object(
+        &mut self,
+        material: &scene::Material,
+        library: &Library,
+        list: &mut DrawList,
+    ) -> Result<u32, DrawError> {
+        let albedo_map = self.optional(material.texture.as_deref(), library, list)?;
+        let normal_map = match &material.texture {
+            Some(id) if material.normal_strength > 0.0 => self.normal_of(id, library, list)?,
+            _ => None,
+        };
+        let made = abi::Material {
+            base_color: material.base_color.map(|c| c as f32),
+            albedo_map,
+            uv_repeat: material.uv_repeat.map(|c| c as f32),
+            hue_offset_deg: material.hue_offset_deg as f32,
+            roughness: material.roughness as f32,
+            metallic: material.metallic as f32,
+            normal_map,
+            normal_strength: material.normal_strength as f32,
+            ..abi::Material::default()
+        };
+        Ok(push(list, made))
+    }
+
+    /// The surface of a part of a person.
+    pub fn of_person(
+        &mut self,
+        surface: &Surface,
+        library: &Library,
+        list: &mut DrawList,
+    ) -> Result<u32, DrawError> {
+        let albedo_map = self.optional(surface.texture.as_deref(), library, list)?;
+        let detail_map = self.optional(surface.detail, library, list)?;
+        let mask = match surface.mask {
+            Mask::None => None,
+            Mask::Skin => Some(self.shared("figure/skin_mask", list, || library.figure.skin_mask())),
+            Mask::Eye => Some(self.shared("figure/eye_mask", list, || library.figure.eye_mask())),
+        };
+        let made = abi::Material {
+            base_color: surface.base_color,
+            albedo_map,
+            detail_map,
+            detail_strength: surface.detail_strength,
+            uv_repeat: surface.uv_repeat,
+            hue_offset_deg: surface.hue_offset_deg,
+            roughness: surface.roughness,
+            mask,
+            layers: surface.layers,
+            wrap: surface.wrap,
+            ..abi::Material::default()
+        };
+        Ok(push(list, made))
+    }
+
+    fn optional(
+        &mut self,
+        id: Option<&str>,
+        library: &Library,
+        list: &mut DrawList,
+    ) -> Result<Option<u32>, DrawError> {
+        id.map(|id| self.named(id, library, list)).transpose()
+    }
+
+    fn named(&mut self, id: &str, library: &Library, list: &mut DrawList) -> Result<u32, DrawError> {
+        if let Some(&index) = self.index_of_texture.get(id) {
+            return Ok(index);
+        }
+        let texture = library.textures.get(id)?;
+        Ok(self.shared(id, list, || texture))
+    }
+
+    /// The normal map that belongs to an albedo texture, if the library has one.
+    fn normal_of(
+        &mut self,
+        id: &str,
+        library: &Library,
+        list: &mut DrawList,
+    ) -> Result<Option<u32>, DrawError> {
+        let normal_id = library.textures.normal_map_of(id);
+        self.optional(normal_id.as_deref(), library, list)
+    }
+
+    fn shared(&mut self, id: &str, list: &mut DrawList, get: impl FnOnce() -> Arc<Texture>) -> u32 {
+        *self.index_of_texture.entry(id.to_owned()).or_insert_with(|| {
+            list.textures.push(get());
+            list.textures.len() as u32 - 1
+        })
+    }
+}
+
+fn push(list: &mut DrawList, material: abi::Material) -> u32 {
+    list.materials.push(material);
+    list.materials.len() as u32 - 1
+}
