@@ -1,1 +1,5 @@
 //! Frame + scene + draw list -> annotations.
+
+pub mod annotation;
+
+pub use annotation::Annotations;
