@@ -27,6 +27,7 @@ pub use abi::DrawList;
 
 use crate::base::space::exposure_from_ev100;
 use crate::library::Library;
+use crate::library::clip::ClipError;
 use crate::library::texture::TextureError;
 use crate::scene::{Camera, Scene};
 use frustum::Frustum;
@@ -81,15 +82,8 @@ pub enum DrawError {
     #[error(transparent)]
     Texture(#[from] TextureError),
     /// The scene names a clip that the library does not hold.
-    #[error("person {slot}: pose.clip: no clip '{clip}' in the library; it has {known}")]
-    UnknownClip {
-        /// The person's slot.
-        slot: u32,
-        /// What was asked for.
-        clip: String,
-        /// What there is.
-        known: String,
-    },
+    #[error(transparent)]
+    Clip(#[from] ClipError),
 }
 
 /// Draws a scene.
@@ -142,6 +136,14 @@ impl<'a> Drawing<'a> {
             surfaces: surfaces::Surfaces::default(),
             drawn: Drawn { list, ..Drawn::default() },
         }
+    }
+
+    /// Pixels that a metre spans at most, at the nearest point of a sphere.
+    fn px_per_m(&self, center_in_view: DVec3, radius_m: f64) -> f64 {
+        // The distance along the axis decides; off the axis it is more than the sphere's near side
+        // suggests, and inside the sphere the near plane bounds it.
+        let nearest_m = (-center_in_view.z - radius_m).max(self.scene.camera.near_m);
+        self.scene.camera.focal_px() / nearest_m
     }
 
     /// Whether a sphere may be seen, and whether its shadow may be.

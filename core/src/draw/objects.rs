@@ -2,10 +2,13 @@
 
 use glam::{DAffine3, DVec3};
 
-use super::{DrawError, Drawing, abi, rows};
+use super::{DrawError, Drawing, Relevance, abi, rows};
 use crate::base::math::affine;
-use crate::geometry::shape;
+use crate::geometry::shape::{Detail, shape_mesh};
 use crate::scene::{Object, Placement, Role};
+
+/// From the middle of the unit cube, which holds every shape, to its corner.
+const CIRCUMRADIUS: f64 = 0.866_025_403_784_438_7;
 
 /// Adds the scene's objects that show or cast a visible shadow.
 pub fn add(drawing: &mut Drawing) -> Result<(), DrawError> {
@@ -18,14 +21,14 @@ pub fn add(drawing: &mut Drawing) -> Result<(), DrawError> {
 }
 
 fn add_one(drawing: &mut Drawing, object: &Object) -> Result<Option<u32>, DrawError> {
-    let mesh = shape::mesh(object.shape);
     let view_from_model = drawing.view_from_world * world_from_model(&object.placement);
-    let center = view_from_model.transform_point3(DVec3::from(mesh.center.map(f64::from)));
-    let radius_m = f64::from(mesh.radius_m) * object.placement.scale.abs().max_element();
-    let relevance = drawing.relevance(center, radius_m);
+    let scale = object.placement.scale.abs().max_element();
+    let center = view_from_model.translation;
+    let relevance = drawing.relevance(center, CIRCUMRADIUS * scale);
     if !relevance.any() {
         return Ok(None);
     }
+    let mesh = shape_mesh(object.shape, detail(drawing, center, scale, relevance));
     let material = if drawing.options.shading {
         let list = &mut drawing.drawn.list;
         drawing.surfaces.of_object(&object.material, drawing.library, list)?
@@ -50,6 +53,17 @@ fn add_one(drawing: &mut Drawing, object: &Object) -> Result<Option<u32>, DrawEr
         smooth: object.shape.is_smooth(),
     });
     Ok(Some(index))
+}
+
+/// The coarsest detail whose circles leave their polygons by less than the wanted error.
+fn detail(drawing: &Drawing, center: DVec3, scale: f64, relevance: Relevance) -> Detail {
+    if !relevance.in_view {
+        return Detail::Low;
+    }
+    let px_per_m = drawing.px_per_m(center, CIRCUMRADIUS * scale);
+    let error_px = |d: &Detail| d.chord_error() * scale * px_per_m;
+    let fine_enough = |d: &&Detail| error_px(d) <= drawing.options.lod_error_px;
+    Detail::ALL.iter().rev().find(fine_enough).copied().unwrap_or(Detail::High)
 }
 
 /// `translate * rotate * scale`.

@@ -12,7 +12,7 @@ use super::objects::world_from_model;
 use super::{DrawError, DrawnPerson, Drawing, Relevance, abi, rows};
 use crate::geometry::person::{self, Dressed, RestBody};
 use crate::geometry::points;
-use crate::geometry::pose::{self, PosedSkeleton};
+use crate::geometry::pose::PosedSkeleton;
 use crate::library::Library;
 use crate::scene::Person;
 
@@ -66,15 +66,11 @@ fn pose_one<'a>(
     library: &Library,
     view_from_world: &DAffine3,
 ) -> Result<Posed<'a>, DrawError> {
-    let clip = library.clips.get(&person.pose.clip).ok_or_else(|| DrawError::UnknownClip {
-        slot: person.slot,
-        clip: person.pose.clip.clone(),
-        known: library.clips.ids().collect::<Vec<_>>().join(", "),
-    })?;
+    let clip = library.clips.get(&person.pose.clip)?;
     let body = person::rest_body(&library.figure, person);
-    let mut skeleton =
-        pose::retarget(&clip.sample(person.pose.phase), &body.joints_m, person.pose.mirrored);
-    skeleton.ground(&body.ground);
+    let frame = clip.sample(person.pose.phase);
+    let mut skeleton = PosedSkeleton::new(&body.joints_m, &frame, person.pose.mirrored);
+    skeleton.ground(body.ground.iter().copied());
     let view_from_model = *view_from_world * world_from_model(&person.placement);
     let scale = person.placement.scale.abs().max_element();
     let (center, reach_m) = joint_sphere(&skeleton, &body);
@@ -117,10 +113,7 @@ fn level_of_detail(drawing: &Drawing, posed: &Posed, relevance: Relevance) -> us
     if !relevance.in_view {
         return errors_m.len() - 1;
     }
-    let nearest_m = (-posed.center_in_view.z - posed.radius_m)
-        .max(posed.center_in_view.length() - posed.radius_m)
-        .max(drawing.scene.camera.near_m);
-    let px_per_m = drawing.scene.camera.focal_px() / nearest_m * posed.scale;
+    let px_per_m = drawing.px_per_m(posed.center_in_view, posed.radius_m) * posed.scale;
     let fine_enough = |error_m: f64| error_m * px_per_m <= drawing.options.lod_error_px;
     errors_m.iter().rposition(|&e| fine_enough(e)).unwrap_or(0)
 }
@@ -161,12 +154,13 @@ fn add_mesh(
 }
 
 fn describe(index: usize, posed: &Posed, object: Option<u32>) -> DrawnPerson {
-    let in_model = points::keypoints(&posed.body, &posed.skeleton);
+    let bones = &posed.skeleton.model_from_rest;
+    let keypoints_in_model = posed.body.keypoints.each_ref().map(|v| points::pose_point(bones, v));
     DrawnPerson {
         person: index,
         instance: posed.person.slot as u16 + 1,
         object,
-        keypoints_in_view: in_model.map(|p| posed.view_from_model.transform_point3(p)),
+        keypoints_in_view: keypoints_in_model.map(|p| posed.view_from_model.transform_point3(p)),
         keypoint_tolerance_m: posed
             .body
             .keypoint_radius_m

@@ -36,6 +36,14 @@ impl Detail {
     }
 }
 
+impl Detail {
+    /// How far a circle leaves its polygon at most, as a share of the shape's size.
+    #[must_use]
+    pub fn chord_error(self) -> f64 {
+        0.5 * (1.0 - libm::cos(std::f64::consts::PI / self.circle_segments() as f64))
+    }
+}
+
 /// All shapes.
 const SHAPES: [Shape; 6] =
     [Shape::Cube, Shape::Cylinder, Shape::Sphere, Shape::Capsule, Shape::Cone, Shape::Torus];

@@ -1,31 +1,19 @@
 //! The one road from a document and a frame number to a labelled picture.
 //!
-//! Preview, export, tests and benches all call [`Studio::render`]; they differ only in the
+//! Preview, export, tests and benches all call [`Studio`]; they differ only in the
 //! document, the wanted outputs and the engine they bring.
 
 use std::sync::Arc;
 
 use crate::document::Document;
+use super::{FrameMaker, RenderedFrame};
 use crate::draw::{self, DrawError, DrawOptions, Drawn};
 use crate::engine::{Engine, EngineError};
-use crate::label::{self, Annotations};
+use crate::label;
 use crate::library::Library;
 use crate::plan::{Frame, Outputs, Pass, PassPlan, SceneFacts, StageTimes};
 use crate::sampling::{self, SampleError};
 use crate::scene::Scene;
-
-/// One frame, from its scene to its labels.
-#[derive(Clone, Debug)]
-pub struct RenderedFrame {
-    /// Every number of it.
-    pub scene: Scene,
-    /// 8-bit sRGB, RGB order, if it was wanted.
-    pub picture: Option<Vec<u8>>,
-    /// The wanted labels.
-    pub annotations: Annotations,
-    /// Time spent by stage.
-    pub times: StageTimes,
-}
 
 /// A frame that cannot be made.
 #[derive(Debug, thiserror::Error)]
@@ -57,21 +45,6 @@ impl Studio {
         Self { document, library, outputs, engine }
     }
 
-    /// Samples a frame, renders it and labels it.
-    ///
-    /// # Errors
-    /// When the scene cannot be sampled or drawn, or the engine refuses it.
-    pub fn render(&mut self, frame: u32) -> Result<RenderedFrame, FrameError> {
-        let mut times = StageTimes::default();
-        let scene = times.measure("sample", || {
-            sampling::sample(&self.document, &self.library.catalogue(), frame)
-        })?;
-        let (drawn, rendered) = self.render_scene(&scene, &mut times)?;
-        let annotations =
-            times.measure("label", || label::annotate(&scene, &drawn, &rendered, &self.outputs));
-        Ok(RenderedFrame { scene, picture: rendered.picture, annotations, times })
-    }
-
     /// The road from a scene on, for scenes that come from elsewhere.
     ///
     /// # Errors
@@ -97,5 +70,21 @@ impl Studio {
             Frame { width: scene.camera.width, height: scene.camera.height, ..Frame::default() }
         };
         Ok((drawn, frame))
+    }
+}
+
+impl FrameMaker for Studio {
+    type Error = FrameError;
+
+    /// Samples a frame, renders it and labels it.
+    fn make(&mut self, frame: u32) -> Result<RenderedFrame, FrameError> {
+        let mut times = StageTimes::default();
+        let scene = times.measure("sample", || {
+            sampling::sample(&self.document, self.library.catalogue(), frame)
+        })?;
+        let (drawn, rendered) = self.render_scene(&scene, &mut times)?;
+        let annotations =
+            times.measure("label", || label::annotate(&scene, &drawn, &rendered, &self.outputs));
+        Ok(RenderedFrame { scene, picture: rendered.picture, annotations, times })
     }
 }

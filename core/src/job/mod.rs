@@ -1,11 +1,13 @@
 //! One frame, and many.
 //!
-//! [`batch`] runs a range of frames over workers into a data set, with whatever [`FrameMaker`] it is
-//! given; what a frame is made of is the maker's business.
+//! [`frame`] is the road from a document to one labelled frame; [`batch`] runs a range of frames over
+//! workers into a data set, with whatever [`FrameMaker`] it is given.
 
 pub mod batch;
+pub mod frame;
 mod maker;
 pub mod progress;
 pub mod ranges;
 
 pub use maker::{FrameMaker, RenderedFrame};
+pub use frame::{FrameError, Studio};
