@@ -197,7 +197,8 @@ impl Canvas {
             let transform = Transform::identity();
             self.pixmap.fill_path(&circle, &paint(color), FillRule::Winding, transform, None);
         } else {
-            self.outlined(&circle, 0.9, color);
+            self.stroke(&circle, 2.2, DARK);
+            self.stroke(&circle, 1.1, color);
         }
     }
 }
