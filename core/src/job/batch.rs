@@ -112,7 +112,7 @@ where
     clerk.finish();
     let wall = start.elapsed();
     let all = wall * u32::try_from(order.workers.get()).unwrap_or(u32::MAX);
-    times.add("idle at the ends", all.saturating_sub(busy));
+    times.add("idle at start and end", all.saturating_sub(busy));
     clerk.close(wall, times)
 }
 

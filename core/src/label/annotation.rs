@@ -95,7 +95,8 @@ impl From<&Camera> for CameraLabel {
         Self {
             k: camera.intrinsics(),
             r: camera.cv_from_world_rotation().transpose().to_cols_array_2d(),
-            t: camera.cv_from_world_translation().to_array(),
+            // Adding zero turns -0 into 0.
+            t: camera.cv_from_world_translation().to_array().map(|v| v + 0.0),
             distortion: Vec::new(),
         }
     }

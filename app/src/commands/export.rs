@@ -1,0 +1,54 @@
+//! `figurant export`: a data set.
+
+use std::num::NonZeroUsize;
+
+use figurant_core::export::{Dataset, Existing};
+use figurant_core::job::batch::{self, BatchError, Order};
+
+use crate::args::ExportArgs;
+use crate::commands::not_loaded;
+use crate::report::Reporter;
+use crate::road::{Road, Wishes};
+use crate::{Console, Exit, Failure, Stop};
+
+/// Writes it.
+pub fn run<R: Road>(
+    road: &R,
+    args: &ExportArgs,
+    console: &mut Console<'_>,
+    stop: &Stop,
+) -> Result<Exit, Failure> {
+    let wishes = Wishes::from(&args.changes).only(args.only.iter().copied());
+    let job = road.load(&args.config, &wishes).map_err(|e| not_loaded(&args.config, e))?;
+    let frames = args.frames.clone().unwrap_or(0..job.frames);
+    let existing = if args.overwrite { Existing::Overwrite } else { Existing::Refuse };
+    let dataset = Dataset::create(&args.out, job.info.clone(), existing).map_err(Failure::input)?;
+    let workers = args.workers.unwrap_or_else(processors);
+    let order = Order { dataset: &dataset, frames, workers, stop: stop.heed() };
+    let mut reporter = Reporter::new(args.progress, order.frames.len() as u64, console);
+    let summary = batch::run(&order, || road.maker(&job), &mut |p| reporter.update(p));
+    let summary = match summary {
+        Ok(summary) => summary,
+        Err(error) => {
+            reporter.clear();
+            let exit = match &error {
+                BatchError::Maker(_) => Exit::NoEngine,
+                BatchError::Storage { .. } => Exit::SomeFailed,
+            };
+            return Err(Failure::new(exit, error));
+        }
+    };
+    reporter.close(&summary, &args.out);
+    Ok(if summary.report.interrupted {
+        Exit::Interrupted
+    } else if summary.report.failed.is_empty() {
+        Exit::Done
+    } else {
+        Exit::SomeFailed
+    })
+}
+
+/// One worker for each processor that the program may use.
+fn processors() -> NonZeroUsize {
+    std::thread::available_parallelism().unwrap_or(NonZeroUsize::MIN)
+}

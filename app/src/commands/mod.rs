@@ -1,0 +1,52 @@
+//! One file for each command: arguments in, streams and an exit status out.
+
+use std::path::Path;
+
+use clap::CommandFactory;
+
+use crate::args::{Args, Changes};
+use crate::road::{LoadError, Wishes};
+use crate::{Console, Exit, Failure};
+
+pub mod doctor;
+pub mod export;
+pub mod frame;
+pub mod schema;
+pub mod validate;
+
+/// Without a command the editor would open, which this version does not have.
+pub fn no_editor(config: Option<&Path>, console: &mut Console<'_>) -> Result<Exit, Failure> {
+    console.note(&Args::command().render_help().to_string());
+    Err(Failure::input(match config {
+        Some(config) => format!(
+            "the editor is not part of this version yet, so {0} cannot be opened; \
+             to write a data set: figurant export {0} --out DIR",
+            config.display()
+        ),
+        None => {
+            "the editor is not part of this version yet; give one of the commands above".to_owned()
+        }
+    }))
+}
+
+impl From<&Changes> for Wishes {
+    fn from(changes: &Changes) -> Self {
+        Self { seed: changes.seed, size: changes.size, simd: changes.simd, outputs: None }
+    }
+}
+
+/// A config that cannot be used, as the commands report it.
+fn not_loaded(config: &Path, error: LoadError) -> Failure {
+    match error {
+        LoadError::Unreadable(text) => Failure::input(text),
+        LoadError::Invalid(problems) => Failure::input(listed(config, &problems)),
+    }
+}
+
+/// The problems of a config, one a line.
+fn listed(config: &Path, problems: &[String]) -> String {
+    let (config, n) = (config.display(), problems.len());
+    let lines = problems.iter().map(|p| format!("\n  {p}")).collect::<String>();
+    let noun = if n == 1 { "problem" } else { "problems" };
+    format!("{config}: {n} {noun} in the config:{lines}")
+}

@@ -1,0 +1,109 @@
+//! What the commands need of the core, in one place.
+//!
+//! [`Road`] is the border that tests put small frames behind; the program itself walks the core's
+//! one road. No command calls documents, libraries or engines by any other way.
+
+use std::collections::BTreeSet;
+use std::path::Path;
+
+use figurant_core::export::DatasetInfo;
+use figurant_core::job::FrameMaker;
+use figurant_core::plan::Outputs;
+
+/// Which of an engine's code paths runs. They give the same bytes.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Simd {
+    /// The fastest that the processor has.
+    #[default]
+    Auto,
+    /// The one that every processor has.
+    Baseline,
+}
+
+/// What the command line changes about a config.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Wishes {
+    /// Instead of the config's seed.
+    pub seed: Option<u64>,
+    /// Width and height instead of the config's, pixels.
+    pub size: Option<[u32; 2]>,
+    /// Instead of the config's outputs.
+    pub outputs: Option<Outputs>,
+    /// Which code path of the engine runs.
+    pub simd: Simd,
+}
+
+/// A config that is ready to be rendered.
+#[derive(Clone, Debug)]
+pub struct Job<D> {
+    /// What makers are set up from.
+    pub document: D,
+    /// How many frames the config has.
+    pub frames: u32,
+    /// What is the same for all frames of a data set of it.
+    pub info: DatasetInfo,
+    /// Which code path of the engine runs.
+    pub simd: Simd,
+}
+
+/// Why a config cannot be rendered.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum LoadError {
+    /// The file, or one that it names, cannot be read.
+    #[error("{0}")]
+    Unreadable(String),
+    /// Its content is wrong. Each text names the field, what is wrong, and what to do.
+    #[error("{}", .0.join("\n"))]
+    Invalid(Vec<String>),
+}
+
+/// The way from configs to frames.
+pub trait Road: Sync {
+    /// A loaded config with what it draws from.
+    type Document: Sync;
+    /// What makes its frames.
+    type Maker: FrameMaker<Error: Send + 'static>;
+
+    /// The JSON Schema of the config.
+    fn schema(&self) -> serde_json::Value;
+
+    /// Loads and checks a config file with the wishes applied.
+    ///
+    /// # Errors
+    /// When the file or an asset cannot be read, or something in it is wrong.
+    fn load(&self, config: &Path, wishes: &Wishes) -> Result<Job<Self::Document>, LoadError>;
+
+    /// A config that ships with the program, to try a machine with.
+    ///
+    /// # Errors
+    /// When what ships with the program is damaged.
+    fn starter(&self, wishes: &Wishes) -> Result<Job<Self::Document>, LoadError>;
+
+    /// Sets up a maker with its engine and buffers.
+    ///
+    /// # Errors
+    /// When no engine can be used here.
+    fn maker(
+        &self,
+        job: &Job<Self::Document>,
+    ) -> Result<Self::Maker, <Self::Maker as FrameMaker>::Error>;
+
+    /// The engine and the code path that a maker would use here, for people to read.
+    fn engine(&self, simd: Simd) -> String;
+
+    /// Loads every asset that ships with the program; a line on each kind.
+    ///
+    /// # Errors
+    /// What cannot be loaded, and why.
+    fn built_in_assets(&self) -> Result<Vec<String>, String>;
+}
+
+impl Wishes {
+    /// The outputs of a list, or those of the config if it is empty.
+    #[must_use]
+    pub fn only(mut self, outputs: impl IntoIterator<Item = figurant_core::plan::Output>) -> Self {
+        let outputs: BTreeSet<_> = outputs.into_iter().collect();
+        self.outputs = Some(outputs).filter(|o| !o.is_empty());
+        self
+    }
+}
