@@ -16,6 +16,7 @@ pub mod overlay;
 mod process;
 mod report;
 pub mod road;
+pub mod studio;
 
 pub use console::Console;
 pub use exit::{Exit, Failure};

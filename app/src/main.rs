@@ -1,2 +1,7 @@
 //! The program `figurant`.
-fn main() {}
+
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    figurant::main(&figurant::studio::Native)
+}

@@ -4,6 +4,7 @@
 //! one road. No command calls documents, libraries or engines by any other way.
 
 use std::collections::BTreeSet;
+use std::num::NonZeroUsize;
 use std::path::Path;
 
 use figurant_core::export::DatasetInfo;
@@ -79,13 +80,14 @@ pub trait Road: Sync {
     /// When what ships with the program is damaged.
     fn starter(&self, wishes: &Wishes) -> Result<Job<Self::Document>, LoadError>;
 
-    /// Sets up a maker with its engine and buffers.
+    /// Sets up a maker with its engine and buffers, that may use some threads of its own.
     ///
     /// # Errors
     /// When no engine can be used here.
     fn maker(
         &self,
         job: &Job<Self::Document>,
+        threads: NonZeroUsize,
     ) -> Result<Self::Maker, <Self::Maker as FrameMaker>::Error>;
 
     /// The engine and the code path that a maker would use here, for people to read.

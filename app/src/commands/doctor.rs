@@ -6,6 +6,7 @@ use figurant_core::export::atomic;
 use figurant_core::job::FrameMaker;
 
 use crate::args::DoctorArgs;
+use crate::commands::processors;
 use crate::road::{Road, Wishes};
 use crate::{Console, Exit, Failure};
 
@@ -15,7 +16,7 @@ pub fn run<R: Road>(
     args: &DoctorArgs,
     console: &mut Console<'_>,
 ) -> Result<Exit, Failure> {
-    let threads = std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
+    let threads = processors();
     let mut page = Page::default();
     page.good("version", format!("figurant {}", env!("CARGO_PKG_VERSION")));
     page.good("system", format!("{} on {}", std::env::consts::OS, std::env::consts::ARCH));
@@ -132,7 +133,7 @@ fn test_frame<R: Road>(road: &R, args: &DoctorArgs) -> Result<String, String> {
     let wishes = Wishes { simd: args.simd, ..Wishes::default() };
     let job = road.starter(&wishes).map_err(|e| e.to_string())?;
     let start = Instant::now();
-    let mut maker = road.maker(&job).map_err(|e| e.to_string())?;
+    let mut maker = road.maker(&job, processors()).map_err(|e| e.to_string())?;
     maker.make(0).map_err(|e| e.to_string())?;
     let first = start.elapsed();
     let start = Instant::now();

@@ -6,7 +6,7 @@ use figurant_core::export::{Dataset, Existing};
 use figurant_core::job::batch::{self, BatchError, Order};
 
 use crate::args::ExportArgs;
-use crate::commands::not_loaded;
+use crate::commands::{not_loaded, processors};
 use crate::report::Reporter;
 use crate::road::{Road, Wishes};
 use crate::{Console, Exit, Failure, Stop};
@@ -24,9 +24,11 @@ pub fn run<R: Road>(
     let existing = if args.overwrite { Existing::Overwrite } else { Existing::Refuse };
     let dataset = Dataset::create(&args.out, job.info.clone(), existing).map_err(Failure::input)?;
     let workers = args.workers.unwrap_or_else(processors);
+    // Frames are the coarsest work to share; threads within a frame are for spare processors.
+    let threads = NonZeroUsize::new(processors().get() / workers).unwrap_or(NonZeroUsize::MIN);
     let order = Order { dataset: &dataset, frames, workers, stop: stop.heed() };
     let mut reporter = Reporter::new(args.progress, order.frames.len() as u64, console);
-    let summary = batch::run(&order, || road.maker(&job), &mut |p| reporter.update(p));
+    let summary = batch::run(&order, || road.maker(&job, threads), &mut |p| reporter.update(p));
     let summary = match summary {
         Ok(summary) => summary,
         Err(error) => {
@@ -46,9 +48,4 @@ pub fn run<R: Road>(
     } else {
         Exit::SomeFailed
     })
-}
-
-/// One worker for each processor that the program may use.
-fn processors() -> NonZeroUsize {
-    std::thread::available_parallelism().unwrap_or(NonZeroUsize::MIN)
 }

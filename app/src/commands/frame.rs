@@ -7,7 +7,7 @@ use figurant_core::job::FrameMaker;
 use figurant_core::plan::Output;
 
 use crate::args::FrameArgs;
-use crate::commands::not_loaded;
+use crate::commands::{not_loaded, processors};
 use crate::overlay;
 use crate::road::{Road, Wishes};
 use crate::{Console, Exit, Failure};
@@ -30,7 +30,7 @@ pub fn run<R: Road>(
     let job = road
         .load(&args.config, &Wishes::from(&args.changes).only(wanted))
         .map_err(|e| not_loaded(&args.config, e))?;
-    let mut maker = road.maker(&job).map_err(|e| Failure::new(Exit::NoEngine, e))?;
+    let mut maker = road.maker(&job, processors()).map_err(|e| Failure::new(Exit::NoEngine, e))?;
     let failed = |reason: &dyn std::fmt::Display| {
         Failure::new(Exit::SomeFailed, format!("frame {}: {reason}", args.frame))
     };

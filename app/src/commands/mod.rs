@@ -1,5 +1,6 @@
 //! One file for each command: arguments in, streams and an exit status out.
 
+use std::num::NonZeroUsize;
 use std::path::Path;
 
 use clap::CommandFactory;
@@ -49,4 +50,9 @@ fn listed(config: &Path, problems: &[String]) -> String {
     let lines = problems.iter().map(|p| format!("\n  {p}")).collect::<String>();
     let noun = if n == 1 { "problem" } else { "problems" };
     format!("{config}: {n} {noun} in the config:{lines}")
+}
+
+/// How many threads the program may run at once.
+pub fn processors() -> NonZeroUsize {
+    std::thread::available_parallelism().unwrap_or(NonZeroUsize::MIN)
 }

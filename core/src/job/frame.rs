@@ -3,16 +3,17 @@
 //! Preview, export, tests and benches all call [`Studio`]; they differ only in the
 //! document, the wanted outputs and the engine they bring.
 
+use std::num::NonZeroUsize;
 use std::sync::Arc;
 
-use crate::document::Document;
+use crate::document::{Document, Problem};
 use super::{FrameMaker, RenderedFrame};
 use crate::draw::{self, DrawError, DrawOptions, Drawn};
 use crate::engine::{Engine, EngineError};
 use crate::label;
 use crate::library::Library;
 use crate::plan::{Frame, Outputs, Pass, PassPlan, SceneFacts, StageTimes};
-use crate::sampling::{self, SampleError};
+use crate::sampling::{self, Catalogue, SampleError};
 use crate::scene::Scene;
 
 /// A frame that cannot be made.
@@ -24,25 +25,56 @@ pub enum FrameError {
     /// The scene names something that the library does not hold.
     #[error("drawing: {0}")]
     Draw(#[from] DrawError),
+    /// No threads could be had.
+    #[error(transparent)]
+    Threads(#[from] ThreadError),
     /// The engine refused.
     #[error("rendering: {0}")]
     Engine(#[from] EngineError),
+}
+
+/// No threads could be had.
+#[derive(Debug, thiserror::Error)]
+#[error("{threads} threads cannot be started ({source}); ask for fewer with --workers")]
+pub struct ThreadError {
+    threads: NonZeroUsize,
+    source: rayon::ThreadPoolBuildError,
 }
 
 /// A document, what it draws from and what renders it.
 pub struct Studio {
     document: Arc<Document>,
     library: Arc<Library>,
+    catalogue: Catalogue,
     outputs: Outputs,
     engine: Box<dyn Engine>,
+    threads: rayon::ThreadPool,
 }
 
 impl Studio {
-    /// A studio for a valid document.
+    /// A studio for a valid document whose assets are there ([`Self::check_assets`]), with some
+    /// threads of its own. What it makes does not depend on how many.
+    ///
+    /// # Errors
+    /// When the system gives no threads.
+    pub fn new(
+        document: Arc<Document>,
+        library: Arc<Library>,
+        engine: Box<dyn Engine>,
+        threads: NonZeroUsize,
+    ) -> Result<Self, FrameError> {
+        let threads = rayon::ThreadPoolBuilder::new()
+            .num_threads(threads.get())
+            .build()
+            .map_err(|source| ThreadError { threads, source })?;
+        let (catalogue, outputs) = (catalogue(&library), document.output.outputs.clone());
+        Ok(Self { document, library, catalogue, outputs, engine, threads })
+    }
+
+    /// What a document names that the library does not hold.
     #[must_use]
-    pub fn new(document: Arc<Document>, library: Arc<Library>, engine: Box<dyn Engine>) -> Self {
-        let outputs = document.output.outputs.clone();
-        Self { document, library, outputs, engine }
+    pub fn check_assets(document: &Document, library: &Library) -> Vec<Problem> {
+        sampling::check_assets(document, &catalogue(library))
     }
 
     /// The road from a scene on, for scenes that come from elsewhere.
@@ -63,13 +95,25 @@ impl Studio {
             shadow_map_size: self.document.quality.shadow_map_size,
             lod_error_px: self.document.quality.lod_error_px,
         };
-        let drawn = times.measure("draw", || draw::draw(scene, &self.library, &options))?;
-        let frame = if plan.needs_engine() {
-            self.engine.render(&drawn.list, &plan, times)?
-        } else {
-            Frame { width: scene.camera.width, height: scene.camera.height, ..Frame::default() }
-        };
-        Ok((drawn, frame))
+        let (library, engine) = (&self.library, &mut self.engine);
+        self.threads.install(|| {
+            let drawn = times.measure("draw", || draw::draw(scene, library, &options))?;
+            let frame = if plan.needs_engine() {
+                engine.render(&drawn.list, &plan, times)?
+            } else {
+                Frame { width: scene.camera.width, height: scene.camera.height, ..Frame::default() }
+            };
+            Ok((drawn, frame))
+        })
+    }
+}
+
+fn catalogue(library: &Library) -> Catalogue {
+    Catalogue {
+        face_targets: library.figure.face_target_names().to_vec(),
+        clips: library.clips.ids().map(str::to_owned).collect(),
+        textures: library.textures.surfaces().to_vec(),
+        cloth_patterns: library.textures.cloths().to_vec(),
     }
 }
 
@@ -80,7 +124,7 @@ impl FrameMaker for Studio {
     fn make(&mut self, frame: u32) -> Result<RenderedFrame, FrameError> {
         let mut times = StageTimes::default();
         let scene = times.measure("sample", || {
-            sampling::sample(&self.document, self.library.catalogue(), frame)
+            sampling::sample(&self.document, &self.catalogue, frame)
         })?;
         let (drawn, rendered) = self.render_scene(&scene, &mut times)?;
         let annotations =

@@ -1,0 +1,145 @@
+//! The program's own road: documents, the library and the engine of the core.
+
+use std::num::NonZeroUsize;
+use std::path::Path;
+use std::sync::Arc;
+
+use figurant_core::document::file::{self, FileError};
+use figurant_core::document::{self, Document, ImageFormat, presets};
+use figurant_core::engine::cpu::{CpuEngine, CpuOptions, SimdChoice};
+use figurant_core::export::{AssetLicence, DatasetInfo, PictureFormat};
+use figurant_core::job::{FrameError, Studio};
+use figurant_core::library::Library;
+
+use crate::road::{Job, LoadError, Road, Simd, Wishes};
+
+/// The road that the program itself walks.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Native;
+
+/// A valid document with everything it draws from.
+#[derive(Clone)]
+pub struct Loaded {
+    document: Arc<Document>,
+    library: Arc<Library>,
+}
+
+impl Road for Native {
+    type Document = Loaded;
+    type Maker = Studio;
+
+    fn schema(&self) -> serde_json::Value {
+        document::schema()
+    }
+
+    fn load(&self, config: &Path, wishes: &Wishes) -> Result<Job<Loaded>, LoadError> {
+        let loaded = file::load(config).map_err(|error| match error {
+            FileError::Invalid { problems, .. } => {
+                LoadError::Invalid(problems.0.iter().map(ToString::to_string).collect())
+            }
+            other => LoadError::Unreadable(other.to_string()),
+        })?;
+        let folders = loaded.asset_folders();
+        prepare(loaded.document, &folders, wishes)
+    }
+
+    fn starter(&self, wishes: &Wishes) -> Result<Job<Loaded>, LoadError> {
+        let document = file::parse(presets::ALL[0].text)
+            .map_err(|problems| LoadError::Unreadable(problems.to_string()))?;
+        prepare(document, &[], wishes)
+    }
+
+    fn maker(&self, job: &Job<Loaded>, threads: NonZeroUsize) -> Result<Studio, FrameError> {
+        let Loaded { document, library } = &job.document;
+        let engine = CpuEngine::new(CpuOptions { simd: choice(job.simd), ..CpuOptions::default() });
+        Studio::new(Arc::clone(document), Arc::clone(library), Box::new(engine), threads)
+    }
+
+    fn engine(&self, simd: Simd) -> String {
+        let engine = CpuEngine::new(CpuOptions { simd: choice(simd), ..CpuOptions::default() });
+        format!("cpu, {}", engine.instruction_set())
+    }
+
+    fn built_in_assets(&self) -> Result<Vec<String>, String> {
+        let library = Library::new(&[], 1024).map_err(|e| e.to_string())?;
+        Ok(vec![
+            format!("1 figure with {} face targets", library.figure.face_target_names().len()),
+            format!("{} motion clips", library.clips.ids().count()),
+            format!(
+                "{} textures and {} cloth patterns",
+                library.textures.surfaces().len(),
+                library.textures.cloths().len()
+            ),
+        ])
+    }
+}
+
+const fn choice(simd: Simd) -> SimdChoice {
+    match simd {
+        Simd::Auto => SimdChoice::Auto,
+        Simd::Baseline => SimdChoice::Baseline,
+    }
+}
+
+/// Applies the wishes, loads the library and checks the one against the other.
+fn prepare(
+    mut document: Document,
+    folders: &[std::path::PathBuf],
+    wishes: &Wishes,
+) -> Result<Job<Loaded>, LoadError> {
+    apply(wishes, &mut document);
+    let invalid = |problems: Vec<document::Problem>| {
+        let texts: Vec<String> = problems.iter().map(ToString::to_string).collect();
+        if texts.is_empty() { Ok(()) } else { Err(LoadError::Invalid(texts)) }
+    };
+    invalid(document::validate(&document))?;
+    let library = Library::new(folders, document.quality.max_texture_size)
+        .map_err(|e| LoadError::Unreadable(e.to_string()))?;
+    let studio = Loaded { document: Arc::new(document), library: Arc::new(library) };
+    invalid(Studio::check_assets(&studio.document, &studio.library))?;
+    Ok(Job {
+        frames: studio.document.frames,
+        info: info(&studio),
+        simd: wishes.simd,
+        document: studio,
+    })
+}
+
+fn apply(wishes: &Wishes, document: &mut Document) {
+    if let Some(seed) = wishes.seed {
+        document.seed = seed;
+    }
+    if let Some([width, height]) = wishes.size {
+        document.image.width = width;
+        document.image.height = height;
+    }
+    if let Some(outputs) = &wishes.outputs {
+        document.output.outputs.clone_from(outputs);
+    }
+}
+
+fn info(Loaded { document, library }: &Loaded) -> DatasetInfo {
+    DatasetInfo {
+        config_json: file::text(document),
+        program_version: env!("CARGO_PKG_VERSION").to_owned(),
+        engine: "cpu".to_owned(),
+        seed: document.seed,
+        width: document.image.width,
+        height: document.image.height,
+        outputs: document.output.outputs.clone(),
+        picture: match document.output.image_format {
+            ImageFormat::Jpeg => PictureFormat::Jpeg(document.output.jpeg_quality),
+            ImageFormat::Png => PictureFormat::Png,
+        },
+        assets: library
+            .licences()
+            .into_iter()
+            .map(|l| AssetLicence {
+                id: l.id,
+                content_hash: l.content_hash,
+                licence: l.licence.to_owned(),
+                source: l.source.to_owned(),
+            })
+            .collect(),
+    }
+}
