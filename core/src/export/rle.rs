@@ -5,6 +5,8 @@
 //! length from the third on as its difference to the one two places before, in groups of five bits
 //! with a continuation bit, least significant group first, offset by 48 into printable characters.
 
+use std::collections::BTreeMap;
+
 /// A binary mask as run lengths.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Rle {
@@ -58,44 +60,75 @@ fn push_number(text: &mut String, mut value: i64) {
 pub fn masks(ids: &[u16], width: u32, height: u32) -> Vec<(u16, Rle)> {
     let (width, height) = (width as usize, height as usize);
     assert_eq!(ids.len(), width * height, "one id for each pixel");
-    let columns = transposed(ids, width, height);
-    let highest = columns.iter().copied().max().unwrap_or(0);
-    // Per id: its runs so far and where the last one ended.
-    let mut open: Vec<(Vec<u32>, usize)> = vec![(Vec::new(), 0); usize::from(highest) + 1];
-    let mut start = 0;
-    for run in columns.chunk_by(|a, b| a == b) {
-        let end = start + run.len();
-        if run[0] != 0 {
-            let (counts, last_end) = &mut open[usize::from(run[0])];
-            counts.extend([(start - *last_end) as u32, run.len() as u32]);
-            *last_end = end;
+    let mut masks: BTreeMap<u16, Building> = BTreeMap::new();
+    let (mut id, mut start) = (0, 0);
+    for change in changes(ids, width, height) {
+        let at = change.x as usize * height + change.y as usize;
+        if change.id != id {
+            if id != 0 {
+                masks.entry(id).or_default().run(start, at);
+            }
+            (id, start) = (change.id, at);
         }
-        start = end;
     }
-    let total = ids.len();
-    let close = |(id, (mut counts, last_end)): (u16, (Vec<u32>, usize))| {
-        if last_end < total {
-            counts.push((total - last_end) as u32);
-        }
-        (id, Rle { counts })
-    };
-    (0..=highest).zip(open).filter(|(_, (counts, _))| !counts.is_empty()).map(close).collect()
+    if id != 0 {
+        masks.entry(id).or_default().run(start, ids.len());
+    }
+    masks.into_iter().map(|(id, mask)| (id, mask.close(ids.len()))).collect()
 }
 
-/// Rows to columns, in square blocks so that both sides stay in the cache.
-fn transposed(ids: &[u16], width: usize, height: usize) -> Vec<u16> {
-    const BLOCK: usize = 32;
-    let mut columns = vec![0; ids.len()];
-    for y0 in (0..height).step_by(BLOCK) {
-        for x0 in (0..width).step_by(BLOCK) {
-            for x in x0..width.min(x0 + BLOCK) {
-                for y in y0..height.min(y0 + BLOCK) {
-                    columns[x * height + y] = ids[y * width + x];
-                }
+/// A mask up to the end of its last run of ones.
+#[derive(Default)]
+struct Building {
+    counts: Vec<u32>,
+    end: usize,
+}
+
+impl Building {
+    fn run(&mut self, start: usize, end: usize) {
+        self.counts.extend([(start - self.end) as u32, (end - start) as u32]);
+        self.end = end;
+    }
+
+    fn close(mut self, pixels: usize) -> Rle {
+        if self.end < pixels {
+            self.counts.push((pixels - self.end) as u32);
+        }
+        Rle { counts: self.counts }
+    }
+}
+
+/// From here down its column, pixels have this id.
+struct Change {
+    x: u32,
+    y: u32,
+    id: u16,
+}
+
+/// The top of every column and each place where a pixel differs from the one above, in column-major
+/// order. Rows are compared in pieces, since most of them are equal; walking down the columns
+/// instead would miss the cache at every step.
+fn changes(ids: &[u16], width: usize, height: usize) -> Vec<Change> {
+    const PIECE: usize = 32;
+    if width == 0 || height == 0 {
+        return Vec::new();
+    }
+    let top = ids[..width].iter().enumerate();
+    let mut changes: Vec<_> = top.map(|(x, &id)| Change { x: x as u32, y: 0, id }).collect();
+    let rows = ids.chunks_exact(width);
+    for (y, (above, row)) in rows.clone().zip(rows.skip(1)).enumerate() {
+        for (piece, (a, b)) in above.chunks(PIECE).zip(row.chunks(PIECE)).enumerate() {
+            if a == b {
+                continue;
+            }
+            for (i, (_, &id)) in a.iter().zip(b).enumerate().filter(|(_, (a, b))| a != b) {
+                changes.push(Change { x: (piece * PIECE + i) as u32, y: y as u32 + 1, id });
             }
         }
     }
-    columns
+    // Stable, so that each column stays in order.
+    changes.sort_by_key(|change| change.x);
+    changes
 }
 
 #[cfg(test)]
