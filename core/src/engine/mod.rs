@@ -29,6 +29,18 @@ pub enum EngineError {
         /// What is possible.
         limit: u64,
     },
+    /// The draw list contradicts itself.
+    #[error("{what} {index} is {got}, expected {expected}; the draw list is at fault")]
+    Invalid {
+        /// Which number.
+        what: &'static str,
+        /// Of which object, draw, material or texture; 0 where there is only one.
+        index: u64,
+        /// What it is, 0 where it is not a whole number.
+        got: u64,
+        /// What it should be.
+        expected: &'static str,
+    },
 }
 
 /// Renders draw lists. One engine is used by one thread at a time and keeps its buffers.

@@ -1,1 +1,350 @@
-//! The native engine.
+//! The native engine: tiles over threads, eight lanes at a time, the same bytes on every machine.
+//!
+//! | stage | file | in -> out |
+//! |---|---|---|
+//! | skin | `skin`, `project` | meshes, palette -> placed and projected vertices |
+//! | visibility | `chunk`, `setup`, `clip`, `bin` | -> triangles by tile |
+//! | shadow | `shadow` | -> the sun's depth map, fitted to what is seen |
+//! | per tile (`tile`): visibility | `raster`, `samples` | -> object, triangle and depth of each sample |
+//! | per tile: shade | `fragment`, `shade` | -> linear display light |
+//! | per tile: display | `display` | -> the 8-bit picture |
+//! | per tile: resolve, reduce | `resolve`, `reduce` | -> ids, distances, counts, extents |
+//!
+//! Picture and labels come from the same samples. A pass that the plan leaves out is not computed.
+//! No result depends on the number of threads or the instruction set: every float operation is
+//! exactly rounded and in a fixed order, and what threads share is summed in whole numbers.
+
+#![allow(clippy::needless_range_loop, reason = "lane loops index several arrays at once")]
+
+mod bin;
+mod chunk;
+mod clip;
+mod display;
+mod fragment;
+mod input;
+mod project;
+mod raster;
+mod reduce;
+mod resolve;
+mod samples;
+mod setup;
+mod shade;
+mod shadow;
+mod simd;
+mod skin;
+mod tile;
+
+use std::sync::{Mutex, PoisonError};
+
+use rayon::prelude::*;
+
+use self::chunk::{Chunk, ChunkList};
+use self::project::{Projection, ScreenVertex};
+use self::samples::TILE;
+use self::setup::Target;
+use self::shade::{Decoding, Geometry, Lighting, Rays, Stage, Surface};
+use self::shadow::{Bounds, ShadowMap, ShadowView, SunAxes, SunShadow};
+use self::simd::{F32x8, Level};
+use self::tile::{Row, Scratch, Shading, TilePass};
+use super::{Engine, EngineError};
+use crate::draw::DrawList;
+use crate::plan::{Frame, ObjectSamples, Pass, PassPlan, StageTimes};
+
+/// Which compiled form of the kernels runs. The results are the same.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum SimdChoice {
+    /// The fastest that the processor has.
+    #[default]
+    Auto,
+    /// What every processor of the target has.
+    Baseline,
+}
+
+/// How a [`CpuEngine`] works.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct CpuOptions {
+    /// Instruction set.
+    pub simd: SimdChoice,
+    /// Threads of its own; 0 to work on the rayon pool of the calling thread.
+    pub threads: usize,
+}
+
+/// Renders draw lists on the processor. Keeps its buffers from frame to frame.
+#[derive(Default)]
+pub struct CpuEngine {
+    level: Option<Level>,
+    pool: Option<rayon::ThreadPool>,
+    buffers: Buffers,
+}
+
+/// Everything that lives on from frame to frame.
+#[derive(Default)]
+struct Buffers {
+    placed: skin::Placed,
+    visible: ChunkList,
+    casting: ChunkList,
+    sun_screen: Vec<ScreenVertex>,
+    shadow_map: ShadowMap,
+    decoding: Decoding,
+    scratches: Mutex<Vec<Scratch>>,
+}
+
+impl CpuEngine {
+    /// An engine without buffers yet.
+    #[must_use]
+    pub fn new(options: CpuOptions) -> Self {
+        let level = match options.simd {
+            SimdChoice::Auto => Level::detect(),
+            SimdChoice::Baseline => Level::BASELINE,
+        };
+        // Without a pool of its own the engine still works, on the caller's.
+        let pool = (options.threads > 0)
+            .then(|| rayon::ThreadPoolBuilder::new().num_threads(options.threads).build().ok())
+            .flatten();
+        Self { level: Some(level), pool, buffers: Buffers::default() }
+    }
+
+    /// The instruction set in use: `avx2` or `baseline`.
+    #[must_use]
+    pub fn simd_name(&self) -> &'static str {
+        self.level().name()
+    }
+
+    fn level(&self) -> Level {
+        self.level.unwrap_or_else(Level::detect)
+    }
+}
+
+impl Engine for CpuEngine {
+    fn render(
+        &mut self,
+        list: &DrawList,
+        plan: &PassPlan,
+        times: &mut StageTimes,
+    ) -> Result<Frame, EngineError> {
+        let level = self.level();
+        let buffers = &mut self.buffers;
+        match &self.pool {
+            Some(pool) => pool.install(|| buffers.render(level, list, plan, times)),
+            None => buffers.render(level, list, plan, times),
+        }
+    }
+}
+
+impl Buffers {
+    fn render(
+        &mut self,
+        level: Level,
+        list: &DrawList,
+        plan: &PassPlan,
+        times: &mut StageTimes,
+    ) -> Result<Frame, EngineError> {
+        times.measure("check", || input::check(list))?;
+        match list.samples {
+            1 => self.passes::<1>(level, list, plan, times),
+            4 => self.passes::<4>(level, list, plan, times),
+            _ => self.passes::<16>(level, list, plan, times),
+        }
+    }
+
+    fn passes<const S: usize>(
+        &mut self,
+        level: Level,
+        list: &DrawList,
+        plan: &PassPlan,
+        times: &mut StageTimes,
+    ) -> Result<Frame, EngineError> {
+        let mut frame =
+            Frame { width: list.view.width, height: list.view.height, ..Frame::default() };
+        if !plan.runs(Pass::Visibility) {
+            return Ok(frame);
+        }
+        let sun = list.lights.sun.filter(|sun| sun.shadow && plan.runs(Pass::Shadow));
+        let axes = sun.map(|sun| SunAxes::new(sun.direction_to_sun));
+        let seen: Vec<bool> = list.objects.iter().map(|o| o.in_view).collect();
+        let casts: Vec<bool> =
+            list.objects.iter().map(|o| o.casts_shadow && axes.is_some()).collect();
+        let wanted: Vec<bool> = seen.iter().zip(&casts).map(|(a, b)| *a || *b).collect();
+        let projection = Projection::perspective(&list.view);
+        let shades = plan.runs(Pass::Shade);
+
+        times.measure("skin", || self.placed.place(level, list, &projection, &wanted, shades))?;
+        times.measure("setup", || {
+            self.visible.fill(list, &self.placed, &seen)?;
+            let (placed, chunks) = (&self.placed, self.visible.as_mut_slice());
+            let target = Target {
+                shaded: shades,
+                sun: axes.as_ref(),
+                ..Target::picture::<S>(&placed.vertices, &placed.screen, &projection)
+            };
+            set_up_all(chunks, list, &target);
+            Ok(())
+        })?;
+        let shadow = match &axes {
+            Some(axes) => self.shadow(level, list, axes, [&seen, &casts], times)?,
+            None => None,
+        };
+        self.tiles::<S>(level, list, plan, shadow, &mut frame, times);
+        Ok(frame)
+    }
+
+    /// Fits and rasters the sun's shadow map; nothing if no shadow can be seen.
+    fn shadow(
+        &mut self,
+        level: Level,
+        list: &DrawList,
+        axes: &SunAxes,
+        [seen, casts]: [&[bool]; 2],
+        times: &mut StageTimes,
+    ) -> Result<Option<ShadowView>, EngineError> {
+        let size = list.shadow_map_size;
+        if size == 0 {
+            return Ok(None);
+        }
+        let view = times.measure("shadow fit", || {
+            let [casters, receivers] = self.bounds(level, list, axes, [seen, casts]);
+            ShadowView::fit(axes, &casters, &receivers, size)
+        });
+        let Some(view) = view else { return Ok(None) };
+        times.measure("shadow setup", || {
+            let vertices = &self.placed.vertices;
+            self.sun_screen.resize(vertices.len(), ScreenVertex::default());
+            let batches = vertices.par_chunks(4096).zip(self.sun_screen.par_chunks_mut(4096));
+            batches.for_each(|(from, to)| project::project_all(level, from, &view.projection, to));
+            self.casting.fill(list, &self.placed, casts)?;
+            let target = Target::shadow(vertices, &self.sun_screen, &view.projection);
+            set_up_all(self.casting.as_mut_slice(), list, &target);
+            Ok(())
+        })?;
+        times.measure("shadow raster", || {
+            self.shadow_map.raster(level, self.casting.as_slice(), size);
+        });
+        Ok(Some(view))
+    }
+
+    /// Bounds, along the sun's axes, of what casts shadows and of what is seen.
+    fn bounds(
+        &self,
+        level: Level,
+        list: &DrawList,
+        axes: &SunAxes,
+        [seen, casts]: [&[bool]; 2],
+    ) -> [Bounds; 2] {
+        let size = [list.view.width, list.view.height];
+        let placed = &self.placed;
+        let of_object = |object: usize| {
+            let span = placed.first_vertex[object]..placed.first_vertex[object + 1];
+            let (vertices, screen) = (&placed.vertices[span.clone()], &placed.screen[span]);
+            let (all, visible) = shadow::bound_vertices(level, vertices, screen, size, axes);
+            [
+                if casts[object] { all } else { Bounds::EMPTY },
+                if seen[object] { visible } else { Bounds::EMPTY },
+            ]
+        };
+        let empty = || [Bounds::EMPTY; 2];
+        let [casters, mut receivers] = (0..list.objects.len())
+            .into_par_iter()
+            .map(of_object)
+            .reduce(empty, |a, b| [a[0].join(&b[0]), a[1].join(&b[1])]);
+        for chunk in self.visible.as_slice() {
+            receivers = receivers.join(&chunk.border_bounds);
+        }
+        [casters, receivers]
+    }
+
+    /// Runs the passes that go tile by tile and fills the frame.
+    fn tiles<const S: usize>(
+        &mut self,
+        level: Level,
+        list: &DrawList,
+        plan: &PassPlan,
+        shadow: Option<ShadowView>,
+        frame: &mut Frame,
+        times: &mut StageTimes,
+    ) {
+        let pixels = frame.width as usize * frame.height as usize;
+        let shades = plan.runs(Pass::Display);
+        let (resolves, reduces) = (plan.runs(Pass::Resolve), plan.runs(Pass::Reduce));
+        frame.picture = shades.then(|| vec![0; pixels * 3]);
+        frame.object_ids = resolves.then(|| vec![0; pixels]);
+        frame.depth_m = resolves.then(|| vec![0.0; pixels]);
+        let shadow = shadow.map(|view| SunShadow { map: &self.shadow_map, view });
+        let pass = TilePass {
+            level,
+            list,
+            placed: &self.placed,
+            chunks: self.visible.as_slice(),
+            shading: shades.then(|| {
+                shading(list, self.visible.as_slice(), &self.placed, &self.decoding, shadow)
+            }),
+            resolves,
+            reduces,
+        };
+        let scratches = &self.scratches;
+        let used = Mutex::new(Vec::new());
+        let lock = |pool: &Mutex<Vec<Scratch>>| pool.lock().map(|mut p| p.pop()).ok().flatten();
+        rows(frame).into_par_iter().enumerate().with_max_len(1).for_each(|(y, row)| {
+            // A scratch that has seen this frame, one of an earlier frame, or a new one.
+            let mut scratch = lock(&used).unwrap_or_else(|| {
+                let mut scratch = lock(scratches).unwrap_or_default();
+                scratch.prepare(S, list.objects.len());
+                scratch
+            });
+            pass.row::<S>(y as u32, row, &mut scratch);
+            used.lock().unwrap_or_else(PoisonError::into_inner).push(scratch);
+        });
+        let used = used.into_inner().unwrap_or_else(PoisonError::into_inner);
+        used.iter().for_each(|scratch| scratch.report(times));
+        frame.object_samples = reduces.then(|| {
+            let mut sums = vec![ObjectSamples::default(); list.objects.len()];
+            used.iter().for_each(|scratch| reduce::merge(&mut sums, &scratch.sums));
+            sums
+        });
+        self.scratches.lock().unwrap_or_else(PoisonError::into_inner).extend(used);
+    }
+}
+
+/// Sets up all chunks for a raster pass.
+fn set_up_all(chunks: &mut [Chunk], list: &DrawList, target: &Target<'_>) {
+    chunks.par_iter_mut().with_max_len(1).for_each(|chunk| {
+        let mesh = &list.objects[chunk.object as usize].mesh;
+        setup::set_up(chunk, &mesh.triangles, target);
+    });
+}
+
+/// Prepares materials and lights.
+fn shading<'a>(
+    list: &'a DrawList,
+    chunks: &'a [Chunk],
+    placed: &'a skin::Placed,
+    decoding: &'a Decoding,
+    shadow: Option<SunShadow<'a>>,
+) -> Shading<'a> {
+    let view = &list.view;
+    let display = |nits: f32| display::tone_map(F32x8::splat(nits * list.exposure)).0[0];
+    Shading {
+        stage: Stage {
+            geometry: Geometry { chunks, vertices: &placed.vertices },
+            rays: Rays::new(view),
+            lighting: Lighting::new(&list.lights, list.exposure, &view.view_from_world, shadow),
+        },
+        surfaces: list.materials.iter().map(|m| Surface::new(m, list, decoding)).collect(),
+        background: list.lights.background_nits.map(display),
+    }
+}
+
+/// Divides a frame's buffers into rows of tiles.
+fn rows(frame: &mut Frame) -> Vec<Row<'_>> {
+    let line = frame.width as usize * TILE;
+    let count = (frame.height as usize).div_ceil(TILE);
+    let mut picture = frame.picture.as_deref_mut().unwrap_or_default().chunks_mut(line * 3);
+    let mut object_ids = frame.object_ids.as_deref_mut().unwrap_or_default().chunks_mut(line);
+    let mut depth_m = frame.depth_m.as_deref_mut().unwrap_or_default().chunks_mut(line);
+    (0..count)
+        .map(|_| Row {
+            picture: picture.next().unwrap_or_default(),
+            object_ids: object_ids.next().unwrap_or_default(),
+            depth_m: depth_m.next().unwrap_or_default(),
+        })
+        .collect()
+}

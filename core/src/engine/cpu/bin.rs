@@ -1,0 +1,71 @@
+//! Bin: which triangles of a chunk touch which tile, as one list per tile.
+//!
+//! The table spans only the tiles that the chunk touches, so that many small chunks cost little
+//! also in a large picture.
+
+use super::chunk::Triangle;
+
+/// Triangle indices by tile.
+#[derive(Default)]
+pub(super) struct Bins {
+    /// First and last column, then row of tiles that hold anything; first > last when none does.
+    rect: [u32; 4],
+    /// Where each tile's list starts, row by row within `rect`, then the end of the last.
+    starts: Vec<u32>,
+    /// Triangle indices, tile after tile, in draw order within each.
+    list: Vec<u32>,
+}
+
+impl Bins {
+    /// Sorts triangles into square tiles of `1 << tile_log2` pixels.
+    pub(super) fn fill(&mut self, triangles: &[Triangle], tile_log2: u32) {
+        let tiles = |t: &Triangle| t.pixels.map(|p| u32::from(p) >> tile_log2);
+        self.rect = triangles.iter().map(tiles).fold([u32::MAX, 0, u32::MAX, 0], |r, t| {
+            [r[0].min(t[0]), r[1].max(t[1]), r[2].min(t[2]), r[3].max(t[3])]
+        });
+        self.starts.clear();
+        self.list.clear();
+        if triangles.is_empty() {
+            return;
+        }
+        let [left, right, top, bottom] = self.rect;
+        let columns = (right - left + 1) as usize;
+        let count = columns * (bottom - top + 1) as usize;
+        let each_tile = |t: &Triangle, f: &mut dyn FnMut(usize)| {
+            let [x0, x1, y0, y1] = tiles(t);
+            for y in y0..=y1 {
+                let row = (y - top) as usize * columns;
+                for x in x0..=x1 {
+                    f(row + (x - left) as usize);
+                }
+            }
+        };
+        // Counts stand two places on, so that after filling every start stands at its own place.
+        self.starts.resize(count + 2, 0);
+        for t in triangles {
+            each_tile(t, &mut |tile| self.starts[tile + 2] += 1);
+        }
+        for i in 2..self.starts.len() {
+            self.starts[i] += self.starts[i - 1];
+        }
+        self.list.resize(self.starts[count + 1] as usize, 0);
+        for (index, t) in triangles.iter().enumerate() {
+            each_tile(t, &mut |tile| {
+                let at = &mut self.starts[tile + 1];
+                self.list[*at as usize] = index as u32;
+                *at += 1;
+            });
+        }
+    }
+
+    /// The triangles that touch a tile, in draw order.
+    #[inline]
+    pub(super) fn of(&self, [x, y]: [u32; 2]) -> &[u32] {
+        let [left, right, top, bottom] = self.rect;
+        if x < left || x > right || y < top || y > bottom {
+            return &[];
+        }
+        let tile = ((y - top) * (right - left + 1) + (x - left)) as usize;
+        &self.list[self.starts[tile] as usize..self.starts[tile + 1] as usize]
+    }
+}

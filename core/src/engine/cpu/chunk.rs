@@ -1,0 +1,166 @@
+//! Triangles on their way to the raster: up to 4096 of one draw at a time.
+//!
+//! A chunk is the unit of set-up and of ids: a sample's id is the chunk's index and the triangle's
+//! index within the chunk. Its buffers live on from frame to frame.
+
+use std::ops::Range;
+
+use super::bin::Bins;
+use super::shadow::Bounds;
+use super::skin::Placed;
+use crate::draw::DrawList;
+use crate::draw::abi::Draw;
+use crate::engine::EngineError;
+
+/// Triangles of a mesh that make a chunk.
+const CHUNK: u32 = 4096;
+/// Binary digits of the triangle in an id: clipping makes up to six triangles of one.
+const TRIANGLE_BITS: u32 = 15;
+/// Id of a sample that shows nothing.
+pub(super) const NOTHING: u32 = u32::MAX;
+
+/// Chunk and triangle of an id.
+#[inline(always)]
+pub(super) const fn split_id(id: u32) -> (usize, usize) {
+    ((id >> TRIANGLE_BITS) as usize, (id & ((1 << TRIANGLE_BITS) - 1)) as usize)
+}
+
+/// The id of the first triangle of a chunk; the others follow.
+#[inline(always)]
+pub(super) const fn first_id(chunk: usize) -> u32 {
+    (chunk as u32) << TRIANGLE_BITS
+}
+
+/// Whether two ids are of the same chunk.
+#[inline(always)]
+pub(super) const fn same_chunk(a: u32, b: u32) -> bool {
+    (a ^ b) >> TRIANGLE_BITS == 0
+}
+
+/// Depth as a linear function of the position in the picture, which it is on every plane.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct DepthPlane {
+    /// At the picture's top-left corner.
+    pub(super) origin: f64,
+    /// Per pixel to the right.
+    pub(super) dx: f64,
+    /// Per pixel down.
+    pub(super) dy: f64,
+}
+
+/// A triangle that may cover samples, its corners clockwise on screen: one cache line.
+#[derive(Clone, Copy, Debug)]
+#[repr(C, align(64))]
+pub(super) struct Triangle {
+    /// Raster coordinates.
+    pub(super) x: [i32; 3],
+    /// Raster coordinates.
+    pub(super) y: [i32; 3],
+    /// See [`DepthPlane`].
+    pub(super) plane: DepthPlane,
+    /// Largest depth of the three corners.
+    pub(super) nearest: f32,
+    /// First and last pixel in x, then in y, that may hold covered samples.
+    pub(super) pixels: [u16; 4],
+    /// Too large for 32-bit edge functions over a whole tile.
+    pub(super) large: bool,
+}
+
+/// What shading needs of a triangle.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Face {
+    /// Vertices of the unclipped triangle.
+    pub(super) corners: [u32; 3],
+    /// Direction of its plane's normal in 1/127, either way round.
+    pub(super) normal: [i8; 3],
+}
+
+/// Up to 4096 triangles of a draw.
+#[derive(Default)]
+pub(super) struct Chunk {
+    /// Index in the draw list.
+    pub(super) draw: u32,
+    /// Index in the draw list.
+    pub(super) object: u32,
+    /// Triangles of the mesh.
+    pub(super) source: Range<usize>,
+    /// Where the object's vertices start.
+    pub(super) first_vertex: u32,
+    /// Counter-clockwise triangles of the mesh are back faces.
+    pub(super) mirrored: bool,
+    /// Back faces are drawn, too.
+    pub(super) double_sided: bool,
+    /// Samples of the draw in one pixel may share their shading.
+    pub(super) smooth: bool,
+    /// Triangles that may cover samples.
+    pub(super) triangles: Vec<Triangle>,
+    /// For each of `triangles`; empty where nothing is shaded.
+    pub(super) faces: Vec<Face>,
+    /// Which triangles touch which tile.
+    pub(super) bins: Bins,
+    /// Triangles of the mesh that need clipping.
+    pub(super) crossing: Vec<[u32; 3]>,
+    /// Triangles of the mesh that reach over the picture's border.
+    pub(super) border: Vec<[u32; 3]>,
+    /// Bounds, along the sun's axes, of the visible parts of `border` and `crossing`.
+    pub(super) border_bounds: Bounds,
+}
+
+/// The chunks of one raster pass, in draw order.
+#[derive(Default)]
+pub(super) struct ChunkList {
+    chunks: Vec<Chunk>,
+    used: usize,
+}
+
+impl ChunkList {
+    /// Divides the triangles of all draws whose object is wanted.
+    pub(super) fn fill(
+        &mut self,
+        list: &DrawList,
+        placed: &Placed,
+        wanted: &[bool],
+    ) -> Result<(), EngineError> {
+        self.used = 0;
+        for (index, draw) in list.draws.iter().enumerate() {
+            if wanted[draw.object as usize] {
+                self.divide(list, placed, index as u32, draw);
+            }
+        }
+        let limit = 1 << (32 - TRIANGLE_BITS);
+        if self.used >= limit {
+            let (what, got) = ("number of chunks of 4096 triangles", self.used as u64);
+            return Err(EngineError::TooLarge { what, got, limit: limit as u64 - 1 });
+        }
+        Ok(())
+    }
+
+    fn divide(&mut self, list: &DrawList, placed: &Placed, index: u32, draw: &Draw) {
+        let object = &list.objects[draw.object as usize];
+        let mut start = draw.triangles.start;
+        while start < draw.triangles.end {
+            let end = draw.triangles.end.min(start + CHUNK);
+            if self.used == self.chunks.len() {
+                self.chunks.push(Chunk::default());
+            }
+            let chunk = &mut self.chunks[self.used];
+            self.used += 1;
+            chunk.draw = index;
+            chunk.object = draw.object;
+            chunk.source = start as usize..end as usize;
+            chunk.first_vertex = placed.first_vertex[draw.object as usize] as u32;
+            chunk.mirrored = placed.mirrored[draw.object as usize];
+            chunk.double_sided = draw.double_sided;
+            chunk.smooth = object.smooth;
+            start = end;
+        }
+    }
+
+    pub(super) fn as_slice(&self) -> &[Chunk] {
+        &self.chunks[..self.used]
+    }
+
+    pub(super) fn as_mut_slice(&mut self) -> &mut [Chunk] {
+        &mut self.chunks[..self.used]
+    }
+}

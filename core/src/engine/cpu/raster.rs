@@ -1,0 +1,217 @@
+//! Raster: ids and depth of the samples of one tile.
+//!
+//! Coverage by exact integer edge functions with the top-left rule; the nearest sample wins, of
+//! equals the earlier drawn. Depth is linear over the picture on every plane, so no division is
+//! needed. Works in blocks of 16 samples ([`super::samples`]), each with the depth of its farthest
+//! sample, so that what lies wholly behind is skipped.
+
+use super::chunk::{Chunk, NOTHING, Triangle, first_id};
+use super::samples::{BLOCK, Layout, RASTER_BITS};
+use super::simd::{F32x8, I32x8, LANES, kernel};
+
+/// Halves of a block.
+const HALVES: usize = BLOCK / LANES;
+
+/// Bound of a large triangle's edge functions within a block: coordinates differ by at most 2^14
+/// pixels, so the sum of both slopes is at most 2^25, and a block has fewer than 32 grid steps.
+const LARGE_BOUND: i64 = 1 << 30;
+
+kernel! {
+    /// Rasters the chunks' triangles that touch a tile of `SIDE` pixels into its samples, which
+    /// are overwritten; without `IDS` only depth.
+    fn raster_tile[const S: usize, const IDS: bool, const SIDE: usize](
+        chunks: &[Chunk],
+        tile: [u32; 2],
+        depth: &mut [f32],
+        ids: &mut [u32],
+        farthest: &mut [f32],
+    ) = raster_body
+}
+
+#[inline(always)]
+fn raster_body<const S: usize, const IDS: bool, const SIDE: usize>(
+    chunks: &[Chunk],
+    tile: [u32; 2],
+    depth: &mut [f32],
+    ids: &mut [u32],
+    farthest: &mut [f32],
+) {
+    let samples = SIDE * SIDE * S;
+    let depth = &mut depth[..samples];
+    let farthest = &mut farthest[..samples / BLOCK];
+    depth.fill(0.0);
+    farthest.fill(0.0);
+    let ids = if IDS {
+        ids[..samples].fill(NOTHING);
+        &mut ids[..samples]
+    } else {
+        ids
+    };
+    let origin_px = tile.map(|t| (t as usize * SIDE) as i32);
+    for (index, chunk) in chunks.iter().enumerate() {
+        for &t in chunk.bins.of(tile) {
+            let triangle = &chunk.triangles[t as usize];
+            let id = first_id(index) + t;
+            if triangle.large {
+                raster_triangle::<S, IDS, SIDE, true>(
+                    triangle, id, origin_px, depth, ids, farthest,
+                );
+            } else {
+                raster_triangle::<S, IDS, SIDE, false>(
+                    triangle, id, origin_px, depth, ids, farthest,
+                );
+            }
+        }
+    }
+}
+
+/// The edge functions of a triangle on the grid of sample positions of a tile: not negative on
+/// the inner side. One step to the right adds `a`, one down adds `b`.
+struct Edges {
+    a: [i32; 3],
+    b: [i32; 3],
+    /// At the tile's origin.
+    at_origin: [i64; 3],
+}
+
+impl Edges {
+    #[inline(always)]
+    fn new<const S: usize>(t: &Triangle, origin_px: [i32; 2]) -> Self {
+        let [ox, oy] = origin_px.map(|px| (px << RASTER_BITS) + Layout::<S>::GRID_ORIGIN);
+        let (mut a, mut b, mut at_origin) = ([0; 3], [0; 3], [0; 3]);
+        for i in 0..3 {
+            let j = if i == 2 { 0 } else { i + 1 };
+            a[i] = t.y[i] - t.y[j];
+            b[i] = t.x[j] - t.x[i];
+            let value =
+                i64::from(b[i]) * i64::from(oy - t.y[i]) + i64::from(a[i]) * i64::from(ox - t.x[i]);
+            // Samples right on an edge belong to the triangle below or to the right of it.
+            let top_left = a[i] > 0 || (a[i] == 0 && b[i] > 0);
+            // On the grid the function changes in steps of 1 << GRID_LOG2, so that rounding down
+            // keeps its sign at every sample.
+            at_origin[i] = (value - i64::from(!top_left)) >> Layout::<S>::GRID_LOG2;
+        }
+        Self { a, b, at_origin }
+    }
+
+    /// Values at a block's corner, given in grid steps from the tile's origin.
+    #[inline(always)]
+    fn at<const LARGE: bool>(&self, x: i32, y: i32) -> [i32; 3] {
+        let mut value = [0; 3];
+        for i in 0..3 {
+            value[i] = if LARGE {
+                let exact = self.at_origin[i]
+                    + i64::from(self.a[i]) * i64::from(x)
+                    + i64::from(self.b[i]) * i64::from(y);
+                // Clamped values keep their sign all over the block.
+                exact.clamp(-LARGE_BOUND, LARGE_BOUND) as i32
+            } else {
+                self.at_origin[i] as i32 + self.a[i] * x + self.b[i] * y
+            };
+        }
+        value
+    }
+}
+
+#[inline(always)]
+fn raster_triangle<const S: usize, const IDS: bool, const SIDE: usize, const LARGE: bool>(
+    t: &Triangle,
+    id: u32,
+    origin_px: [i32; 2],
+    depth: &mut [f32],
+    ids: &mut [u32],
+    farthest: &mut [f32],
+) {
+    let log2 = Layout::<S>::BLOCK_LOG2;
+    let block_px = Layout::<S>::BLOCK_PX;
+    let grid_per_block = block_px * Layout::<S>::GRID_PER_PX;
+    let blocks_per_row = SIDE >> log2;
+    let edges = Edges::new::<S>(t, origin_px);
+
+    // What a step within the block adds: per lane, and at most.
+    let last_step = grid_per_block - 1;
+    let mut lane_edges = [[I32x8::ZERO; 3]; HALVES];
+    let mut at_most = [0; 3];
+    let [mut slope_x, mut slope_y] = [t.plane.dx as f32, t.plane.dy as f32];
+    if !(slope_x.is_finite() && slope_y.is_finite()) {
+        (slope_x, slope_y) = (0.0, 0.0);
+    }
+    let mut lane_depth = [F32x8::ZERO; HALVES];
+    for (half, (lane_edges, lane_depth)) in lane_edges.iter_mut().zip(&mut lane_depth).enumerate() {
+        let (x, y) = lane_steps::<S>(half);
+        for i in 0..3 {
+            lane_edges[i] = I32x8::splat(edges.a[i]) * x + I32x8::splat(edges.b[i]) * y;
+        }
+        let (x, y) = lane_px::<S>(half);
+        *lane_depth = F32x8::splat(slope_x) * x + F32x8::splat(slope_y) * y;
+    }
+    for i in 0..3 {
+        at_most[i] = edges.a[i].max(0) * last_step + edges.b[i].max(0) * last_step;
+    }
+    let depth_origin = (t.plane.origin
+        + t.plane.dx * f64::from(origin_px[0])
+        + t.plane.dy * f64::from(origin_px[1])) as f32;
+
+    let side = SIDE as i32 - 1;
+    let first = |px: u16, axis: usize| (i32::from(px) - origin_px[axis]).max(0) >> log2;
+    let last = |px: u16, axis: usize| (i32::from(px) - origin_px[axis]).min(side) >> log2;
+    let (bx0, bx1) = (first(t.pixels[0], 0), last(t.pixels[1], 0));
+    let (by0, by1) = (first(t.pixels[2], 1), last(t.pixels[3], 1));
+    for by in by0..=by1 {
+        for bx in bx0..=bx1 {
+            let block = by as usize * blocks_per_row + bx as usize;
+            if t.nearest <= farthest[block] {
+                continue;
+            }
+            let at = edges.at::<LARGE>(bx * grid_per_block, by * grid_per_block);
+            if ((at[0] + at_most[0]) | (at[1] + at_most[1]) | (at[2] + at_most[2])) < 0 {
+                continue;
+            }
+            let block_depth =
+                depth_origin + slope_x * (bx * block_px) as f32 + slope_y * (by * block_px) as f32;
+            let mut least = F32x8::splat(f32::MAX);
+            for half in 0..HALVES {
+                let from = block * BLOCK + half * LANES;
+                let old_depth = F32x8::load(&depth[from..from + LANES]);
+                let new_depth = F32x8::splat(block_depth) + lane_depth[half];
+                let inside = (I32x8::splat(at[0]) + lane_edges[half][0])
+                    | (I32x8::splat(at[1]) + lane_edges[half][1])
+                    | (I32x8::splat(at[2]) + lane_edges[half][2]);
+                let wins = inside.gt(I32x8::splat(-1)) & new_depth.gt(old_depth);
+                let kept = wins.select(new_depth, old_depth);
+                kept.store(&mut depth[from..from + LANES]);
+                if IDS {
+                    let ids = &mut ids[from..from + LANES];
+                    let mut old = [0; LANES];
+                    old.copy_from_slice(ids);
+                    ids.copy_from_slice(&wins.select_u32(id, old));
+                }
+                least = least.min(kept);
+            }
+            farthest[block] = least.smallest();
+        }
+    }
+}
+
+/// Position of the lanes of half a block, in grid steps from the block's corner.
+#[inline(always)]
+fn lane_steps<const S: usize>(half: usize) -> (I32x8, I32x8) {
+    let (mut x, mut y) = ([0; LANES], [0; LANES]);
+    for lane in 0..LANES {
+        let p = Layout::<S>::BLOCK_16TH[half * LANES + lane];
+        let steps = |v: i32| if S == 1 { (v - 8) / 16 } else { v };
+        (x[lane], y[lane]) = (steps(p[0]), steps(p[1]));
+    }
+    (I32x8(x), I32x8(y))
+}
+
+/// Position of the lanes of half a block, in pixels from the block's corner.
+#[inline(always)]
+fn lane_px<const S: usize>(half: usize) -> (F32x8, F32x8) {
+    let (mut x, mut y) = ([0.0; LANES], [0.0; LANES]);
+    for lane in 0..LANES {
+        let p = Layout::<S>::BLOCK_16TH[half * LANES + lane];
+        (x[lane], y[lane]) = (p[0] as f32 / 16.0, p[1] as f32 / 16.0);
+    }
+    (F32x8(x), F32x8(y))
+}

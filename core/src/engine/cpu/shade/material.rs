@@ -1,0 +1,191 @@
+//! Materials: maps, hue and masked layers, down to albedo, roughness and normal.
+
+use super::surface::{Points, TexturePoints};
+use super::texture::{Decoding, Sampler, footprint};
+use crate::draw::DrawList;
+use crate::draw::abi::Material;
+use crate::engine::cpu::simd::{F32x8, Vec3x8};
+
+/// A material ready for shading.
+pub(in crate::engine::cpu) struct Surface<'a> {
+    /// With the hue already rotated where there is no albedo map.
+    base_color: [f32; 3],
+    albedo_map: Option<Sampler<'a>>,
+    detail: Option<(Sampler<'a>, f32)>,
+    uv_repeat: [f32; 2],
+    /// Sixths of a turn, to be applied after the albedo map.
+    hue_offset: Option<f32>,
+    roughness: f32,
+    pub(super) metallic: f32,
+    normal_map: Option<(Sampler<'a>, f32)>,
+    mask: Option<Sampler<'a>>,
+    layers: [[f32; 4]; 4],
+    pub(super) wrap: f32,
+}
+
+/// What light sees of eight fragments.
+pub(super) struct Look {
+    /// Linear.
+    pub(super) albedo: Vec3x8,
+    /// Perceptual.
+    pub(super) roughness: F32x8,
+    /// Unit, view space.
+    pub(super) normal: Vec3x8,
+}
+
+impl<'a> Surface<'a> {
+    pub(in crate::engine::cpu) fn new(
+        material: &Material,
+        list: &'a DrawList,
+        decoding: &'a Decoding,
+    ) -> Self {
+        let sampler = |map: Option<u32>| {
+            map.map(|index| Sampler::new(&list.textures[index as usize], decoding))
+        };
+        let turn = material.hue_offset_deg / 60.0;
+        let hue_offset = (turn != 0.0).then(|| turn - 6.0 * (turn / 6.0).floor());
+        let albedo_map = sampler(material.albedo_map);
+        let mut base_color = material.base_color;
+        if let (Some(turn), None) = (hue_offset, &albedo_map) {
+            let rotated = rotate_hue(Vec3x8::splat(base_color), turn);
+            base_color = [rotated.x.0[0], rotated.y.0[0], rotated.z.0[0]];
+        }
+        Self {
+            base_color,
+            detail: sampler(material.detail_map).map(|s| (s, material.detail_strength)),
+            uv_repeat: material.uv_repeat,
+            hue_offset: hue_offset.filter(|_| albedo_map.is_some()),
+            albedo_map,
+            roughness: material.roughness.clamp(0.04, 1.0),
+            metallic: material.metallic.clamp(0.0, 1.0),
+            normal_map: sampler(material.normal_map)
+                .filter(|_| material.normal_strength != 0.0)
+                .map(|s| (s, material.normal_strength)),
+            mask: sampler(material.mask),
+            layers: material.layers,
+            wrap: material.wrap.clamp(0.0, 0.5),
+        }
+    }
+
+    /// Whether texture coordinates are needed.
+    pub(super) const fn textured(&self) -> bool {
+        self.albedo_map.is_some()
+            || self.detail.is_some()
+            || self.normal_map.is_some()
+            || self.mask.is_some()
+    }
+
+    /// The material at eight fragments whose normals face the viewer.
+    #[inline(always)]
+    pub(super) fn look(&self, points: &Points) -> Look {
+        let mut look = Look {
+            albedo: Vec3x8::splat(self.base_color),
+            roughness: F32x8::splat(self.roughness),
+            normal: points.normal,
+        };
+        if let Some(texture) = &points.texture {
+            self.apply_repeated(texture, &mut look);
+            if let Some(mask) = &self.mask {
+                let size = footprint(texture.d_dx, texture.d_dy);
+                self.apply_layers(mask.sample::<4>(texture.uv, size), &mut look);
+            }
+        }
+        look
+    }
+
+    /// Albedo, detail and normal map, which share the repeated coordinates.
+    #[inline(always)]
+    fn apply_repeated(&self, texture: &TexturePoints, look: &mut Look) {
+        let repeat = self.uv_repeat.map(F32x8::splat);
+        let repeated = |v: [F32x8; 2]| [v[0] * repeat[0], v[1] * repeat[1]];
+        let uv = repeated(texture.uv);
+        let size = footprint(repeated(texture.d_dx), repeated(texture.d_dy));
+        if let Some(map) = &self.albedo_map {
+            let [r, g, b] = map.sample::<3>(uv, size);
+            look.albedo = look.albedo * Vec3x8::new(r, g, b);
+            if let Some(turn) = self.hue_offset {
+                look.albedo = rotate_hue(look.albedo, turn);
+            }
+        }
+        if let Some((map, strength)) = &self.detail {
+            let [r] = map.sample::<1>(uv, size);
+            let factor = F32x8::ONE + F32x8::splat(*strength) * (r + r - F32x8::ONE);
+            look.albedo = look.albedo.scale(factor.max(F32x8::ZERO));
+        }
+        if let Some((map, strength)) = &self.normal_map {
+            let [x, y, z] = map.sample::<3>(uv, size);
+            let signed = |v: F32x8| v + v - F32x8::ONE;
+            let strength = F32x8::splat(*strength);
+            let bend = [signed(x) * strength, signed(y) * strength];
+            look.normal = bent(look.normal, bend, signed(z), texture);
+        }
+    }
+
+    #[inline(always)]
+    fn apply_layers(&self, mask: [F32x8; 4], look: &mut Look) {
+        for (layer, mask) in self.layers.iter().zip(mask) {
+            let color = Vec3x8::splat([layer[0], layer[1], layer[2]]);
+            look.albedo = look.albedo.mix(color, mask);
+            look.roughness = look.roughness.mix(F32x8::splat(layer[3]), mask);
+        }
+        look.roughness = look.roughness.clamp(0.04, 1.0);
+    }
+}
+
+/// A normal turned by a tangent-space one: x along growing u, y up the picture (against v), z
+/// along the normal.
+#[inline(always)]
+fn bent(normal: Vec3x8, [x, y]: [F32x8; 2], z: F32x8, texture: &TexturePoints) -> Vec3x8 {
+    let onto_surface = |d: Vec3x8| (d - normal.scale(d.dot(normal))).normalized();
+    let tangent = onto_surface(texture.tangent);
+    let bitangent = onto_surface(texture.bitangent);
+    (tangent.scale(x) - bitangent.scale(y) + normal.scale(z.max(F32x8::splat(0.05)))).normalized()
+}
+
+/// Rotates the hue in HSV by sixths of a turn in 0..6; saturation and value stay.
+///
+/// Value V and chroma C give back each channel as `V - C clamp(min(k, 4 - k), 0, 1)` with
+/// `k = (n + hue) mod 6` and n = 5, 3, 1 for red, green and blue.
+#[inline(always)]
+fn rotate_hue(c: Vec3x8, turn: f32) -> Vec3x8 {
+    let value = c.x.max(c.y).max(c.z);
+    let chroma = value - c.x.min(c.y).min(c.z);
+    let inverse = F32x8::ONE / chroma.max(F32x8::splat(1e-12));
+    let of_red = (c.y - c.z) * inverse;
+    let of_green = (c.z - c.x) * inverse + F32x8::splat(2.0);
+    let of_blue = (c.x - c.y) * inverse + F32x8::splat(4.0);
+    let hue = c.x.ge(value).select(of_red, c.y.ge(value).select(of_green, of_blue));
+    let channel = |n: f32| {
+        let k = hue + F32x8::splat(n + turn);
+        let k = k - (k * F32x8::splat(1.0 / 6.0)).floor() * F32x8::splat(6.0);
+        value - chroma * k.min(F32x8::splat(4.0) - k).clamp(0.0, 1.0)
+    };
+    Vec3x8::new(channel(5.0), channel(3.0), channel(1.0))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn rotated(rgb: [f32; 3], deg: f32) -> [f32; 3] {
+        let v = rotate_hue(Vec3x8::splat(rgb), deg / 60.0);
+        [v.x.0[3], v.y.0[3], v.z.0[3]]
+    }
+
+    #[test]
+    fn a_third_of_a_turn_moves_every_channel_on() {
+        for rgb in [[0.8, 0.2, 0.1], [0.1, 0.9, 0.5], [0.3, 0.3, 0.7], [0.4, 0.4, 0.4]] {
+            let [r, g, b] = rotated(rgb, 120.0);
+            for (got, want) in [(r, rgb[2]), (g, rgb[0]), (b, rgb[1])] {
+                assert!((got - want).abs() < 1e-6, "{rgb:?} -> {r} {g} {b}");
+            }
+        }
+    }
+
+    #[test]
+    fn red_turns_through_yellow_at_a_sixth() {
+        for (got, want) in rotated([1.0, 0.0, 0.0], 60.0).iter().zip([1.0, 1.0, 0.0]) {
+            assert!((got - want).abs() < 1e-6);
+        }
+    }
+}

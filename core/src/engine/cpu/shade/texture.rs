@@ -1,0 +1,186 @@
+//! Trilinear filtering of textures, eight look-ups at a time.
+//!
+//! Texels are decoded before they are mixed, so that sRGB textures are filtered in linear light.
+
+use crate::base::color::linear_from_srgb;
+use crate::engine::cpu::simd::{F32x8, I32x8, LANES};
+use crate::library::texture::{Encoding, Texture};
+
+/// Mip levels of the largest texture that is accepted, and some to spare.
+const LEVELS: usize = 16;
+
+/// What each byte of a texel stands for.
+pub(in crate::engine::cpu) struct Decoding {
+    srgb: [f32; 256],
+    linear: [f32; 256],
+}
+
+impl Default for Decoding {
+    fn default() -> Self {
+        let unit = |byte: usize| byte as f32 / 255.0;
+        Self {
+            srgb: std::array::from_fn(|byte| linear_from_srgb(unit(byte))),
+            linear: std::array::from_fn(unit),
+        }
+    }
+}
+
+/// A texture ready for look-ups.
+#[derive(Clone, Copy)]
+pub(super) struct Sampler<'a> {
+    texels: &'a [u32],
+    /// First texel of each level.
+    level_start: [i32; LEVELS],
+    log2_size: i32,
+    decode: &'a [f32; 256],
+}
+
+impl<'a> Sampler<'a> {
+    pub(super) fn new(texture: &'a Texture, decoding: &'a Decoding) -> Self {
+        let mut level_start = [0; LEVELS];
+        for level in 0..=texture.log2_size {
+            level_start[level as usize] = Texture::level_offset(texture.log2_size, level) as i32;
+        }
+        Self {
+            texels: &texture.texels,
+            level_start,
+            log2_size: texture.log2_size as i32,
+            decode: match texture.encoding {
+                Encoding::Srgb => &decoding.srgb,
+                Encoding::Linear => &decoding.linear,
+            },
+        }
+    }
+
+    /// The first `C` channels at texture coordinates that wrap; `footprint` is log2 of a pixel's
+    /// size in them.
+    #[inline(always)]
+    pub(super) fn sample<const C: usize>(&self, uv: [F32x8; 2], footprint: F32x8) -> [F32x8; C] {
+        let uv = [uv[0] - uv[0].floor(), uv[1] - uv[1].floor()];
+        let top = self.log2_size as f32;
+        let level = (footprint + F32x8::splat(top)).clamp(0.0, top);
+        let lower = level.floor();
+        let between = level - lower;
+        let level = lower.round_i32();
+        let mut out = self.bilinear::<C>(uv, level);
+        if between.gt(F32x8::ZERO).any() {
+            let upper = I32x8(level.0.map(|l| (l + 1).min(self.log2_size)));
+            let coarse = self.bilinear::<C>(uv, upper);
+            for (out, coarse) in out.iter_mut().zip(coarse) {
+                *out = out.mix(coarse, between);
+            }
+        }
+        out
+    }
+
+    /// Mixes the four texels round a point of one level.
+    #[inline(always)]
+    fn bilinear<const C: usize>(&self, uv: [F32x8; 2], level: I32x8) -> [F32x8; C] {
+        let one = I32x8::splat(1);
+        let log2_side = I32x8::splat(self.log2_size) - level;
+        let side = one.shl_each(log2_side);
+        let last = side - one;
+        let half = F32x8::splat(0.5);
+        let (x, y) = (uv[0] * side.to_f32() - half, uv[1] * side.to_f32() - half);
+        let (left, top) = (x.floor(), y.floor());
+        let (wx, wy) = (x - left, y - top);
+        let (left, top) = (left.round_i32(), top.round_i32());
+        let mut start = I32x8::ZERO;
+        for lane in 0..LANES {
+            start.0[lane] = self.level_start[level.0[lane] as usize & (LEVELS - 1)];
+        }
+        let columns = [left & last, (left + one) & last];
+        let rows = [
+            start + (top & last).shl_each(log2_side),
+            start + ((top + one) & last).shl_each(log2_side),
+        ];
+        let corners = [
+            self.fetch::<C>(rows[0] + columns[0]),
+            self.fetch::<C>(rows[0] + columns[1]),
+            self.fetch::<C>(rows[1] + columns[0]),
+            self.fetch::<C>(rows[1] + columns[1]),
+        ];
+        std::array::from_fn(|c| {
+            let upper = corners[0][c].mix(corners[1][c], wx);
+            upper.mix(corners[2][c].mix(corners[3][c], wx), wy)
+        })
+    }
+
+    /// Decoded channels of eight texels.
+    #[inline(always)]
+    fn fetch<const C: usize>(&self, index: I32x8) -> [F32x8; C] {
+        let mut out = [F32x8::ZERO; C];
+        for lane in 0..LANES {
+            let texel = self.texels.get(index.0[lane] as usize).copied().unwrap_or(0);
+            for (c, out) in out.iter_mut().enumerate() {
+                out.0[lane] = self.decode[(texel >> (8 * c) & 255) as usize];
+            }
+        }
+        out
+    }
+}
+
+/// log2 of a pixel's size in texture coordinates, from the change of (u, v) over one pixel to the
+/// right and one pixel down: the longer of the two.
+#[inline(always)]
+pub(super) fn footprint(d_dx: [F32x8; 2], d_dy: [F32x8; 2]) -> F32x8 {
+    let x2 = d_dx[0] * d_dx[0] + d_dx[1] * d_dx[1];
+    let y2 = d_dy[0] * d_dy[0] + d_dy[1] * d_dy[1];
+    log2(x2.max(y2).clamp(1e-20, 1e20)) * F32x8::splat(0.5)
+}
+
+/// log2 of positive numbers, to within 0.01: the exponent, and a parabola for the mantissa.
+#[inline(always)]
+fn log2(v: F32x8) -> F32x8 {
+    let bits = v.to_bits();
+    let exponent = ((bits >> 23) - I32x8::splat(127)).to_f32();
+    let mantissa = (bits & I32x8::splat(0x7f_ffff)).to_f32() * F32x8::splat(1.0 / 8_388_608.0);
+    exponent + mantissa + F32x8::splat(0.344) * mantissa * (F32x8::ONE - mantissa)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Each level of one grey, 64 bytes brighter from level to level.
+    fn stepped(log2_size: u32, encoding: Encoding) -> Texture {
+        let mut texels = Vec::new();
+        for level in 0..=log2_size {
+            let side = 1usize << (log2_size - level);
+            texels.resize(texels.len() + side * side, (64 * level) * 0x0001_0101);
+        }
+        Texture { log2_size, encoding, texels }
+    }
+
+    #[test]
+    fn log2_is_close() {
+        for v in [1e-6f32, 0.3, 1.0, 1.44, 1.99, 700.0] {
+            assert!((log2(F32x8::splat(v)).0[0] - libm::log2f(v)).abs() < 0.01);
+        }
+    }
+
+    #[test]
+    fn levels_are_mixed_in_linear_light() {
+        let decoding = Decoding::default();
+        let texture = stepped(3, Encoding::Srgb);
+        let sampler = Sampler::new(&texture, &decoding);
+        let uv = [F32x8::splat(0.3), F32x8::splat(-7.6)];
+        // A pixel of 1/4 of the texture: level 1; halfway to 1/2: level 1.5.
+        let at = |footprint: f32| sampler.sample::<1>(uv, F32x8::splat(footprint))[0].0[0];
+        let of = |byte: f32| linear_from_srgb(byte / 255.0);
+        assert!((at(-2.0) - of(64.0)).abs() < 1e-6);
+        assert!((at(-1.5) - 0.5 * (of(64.0) + of(128.0))).abs() < 1e-6);
+        assert_eq!((at(-9.0), at(9.0)), (of(0.0), of(192.0)));
+    }
+
+    #[test]
+    fn the_middle_of_a_texel_is_the_texel() {
+        let decoding = Decoding::default();
+        let texels: Vec<u32> = (0..16).chain(0..4).chain(0..1).collect();
+        let texture = Texture { log2_size: 2, encoding: Encoding::Linear, texels };
+        let sampler = Sampler::new(&texture, &decoding);
+        let uv = [F32x8::splat(2.0 + 0.625), F32x8::splat(0.375)]; // column 2, row 1
+        let got = sampler.sample::<1>(uv, F32x8::splat(-8.0))[0].0[0];
+        assert!((got * 255.0 - 6.0).abs() < 1e-4);
+    }
+}

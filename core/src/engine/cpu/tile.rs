@@ -1,0 +1,288 @@
+//! One tile of the picture, from raster to finished pixels.
+//!
+//! A thread takes a row of tiles and walks it with its own [`Scratch`]; nothing but the rows of
+//! the result is shared, so that the result does not depend on who took which.
+
+use std::time::{Duration, Instant};
+
+use super::chunk::{Chunk, NOTHING};
+use super::fragment::{Fragments, Visible};
+use super::raster::raster_tile;
+use super::reduce;
+use super::resolve::{Resolved, SampleObjects, resolve};
+use super::samples::{BLOCK, Layout, TILE};
+use super::shade::{DrawnSurface, Stage, Surface, TileColor, shade};
+use super::simd::{F32x8, LANES, Level};
+use super::{display, skin};
+use crate::draw::DrawList;
+use crate::plan::{ObjectSamples, StageTimes};
+
+/// Steps whose time is kept apart.
+#[derive(Clone, Copy)]
+enum Step {
+    Raster,
+    Fragments,
+    Shade,
+    Display,
+    Resolve,
+    Reduce,
+}
+
+impl Step {
+    const NAMES: [&'static str; 6] =
+        ["raster", "fragments", "shade", "display", "resolve", "reduce"];
+}
+
+/// What a thread works in; lives on from frame to frame.
+pub(super) struct Scratch {
+    depth: Vec<f32>,
+    ids: Vec<u32>,
+    farthest: Vec<f32>,
+    fragments: Fragments,
+    reaching: Vec<u32>,
+    color: Box<TileColor>,
+    bytes: Box<[[u8; 3]; TILE * TILE]>,
+    objects: SampleObjects,
+    resolved: Box<Resolved>,
+    /// Sums over the tiles that this thread walked.
+    pub(super) sums: Vec<ObjectSamples>,
+    times: [Duration; Step::NAMES.len()],
+}
+
+impl Default for Scratch {
+    fn default() -> Self {
+        Self {
+            depth: Vec::new(),
+            ids: Vec::new(),
+            farthest: Vec::new(),
+            fragments: Fragments::default(),
+            reaching: Vec::new(),
+            color: Box::new([[0.0; TILE * TILE]; 3]),
+            bytes: Box::new([[0; 3]; TILE * TILE]),
+            objects: SampleObjects::default(),
+            resolved: Box::default(),
+            sums: Vec::new(),
+            times: [Duration::ZERO; Step::NAMES.len()],
+        }
+    }
+}
+
+impl Scratch {
+    /// Makes it ready for a frame.
+    pub(super) fn prepare(&mut self, samples: usize, objects: usize) {
+        let n = TILE * TILE * samples;
+        self.depth.resize(n, 0.0);
+        self.ids.resize(n, NOTHING);
+        self.farthest.resize(n / BLOCK, 0.0);
+        self.sums.clear();
+        self.sums.resize(objects, ObjectSamples::default());
+        self.times = [Duration::ZERO; Step::NAMES.len()];
+    }
+
+    /// Adds the time spent to the frame's.
+    pub(super) fn report(&self, times: &mut StageTimes) {
+        for (name, time) in Step::NAMES.into_iter().zip(self.times) {
+            if time > Duration::ZERO {
+                times.add(name, time);
+            }
+        }
+    }
+
+    fn measure<T>(&mut self, step: Step, f: impl FnOnce(&mut Self) -> T) -> T {
+        let start = Instant::now();
+        let value = f(self);
+        self.times[step as usize] += start.elapsed();
+        value
+    }
+}
+
+/// Everything that the tiles of a frame have in common.
+pub(super) struct TilePass<'a> {
+    pub(super) level: Level,
+    pub(super) list: &'a DrawList,
+    pub(super) placed: &'a skin::Placed,
+    pub(super) chunks: &'a [Chunk],
+    /// Present when the picture is wanted.
+    pub(super) shading: Option<Shading<'a>>,
+    pub(super) resolves: bool,
+    pub(super) reduces: bool,
+}
+
+/// What turns fragments into colours.
+pub(super) struct Shading<'a> {
+    pub(super) stage: Stage<'a>,
+    pub(super) surfaces: Vec<Surface<'a>>,
+    /// Linear display light where nothing stands.
+    pub(super) background: [f32; 3],
+}
+
+/// The part of the frame's buffers that a row of tiles fills; empty where not wanted.
+pub(super) struct Row<'a> {
+    pub(super) picture: &'a mut [u8],
+    pub(super) object_ids: &'a mut [u16],
+    pub(super) depth_m: &'a mut [f32],
+}
+
+impl TilePass<'_> {
+    /// Renders the tiles of a row.
+    pub(super) fn row<const S: usize>(&self, y: u32, mut row: Row<'_>, scratch: &mut Scratch) {
+        for x in 0..self.list.view.width.div_ceil(TILE as u32) {
+            self.tile::<S>([x, y], &mut row, scratch);
+        }
+    }
+
+    fn tile<const S: usize>(&self, tile: [u32; 2], row: &mut Row<'_>, scratch: &mut Scratch) {
+        let view = &self.list.view;
+        let origin_px = tile.map(|t| t * TILE as u32);
+        let size = [view.width - origin_px[0], view.height - origin_px[1]]
+            .map(|rest| rest.min(TILE as u32) as usize);
+        scratch.measure(Step::Raster, |s| {
+            raster_tile::<S, true, TILE>(
+                self.level,
+                self.chunks,
+                tile,
+                &mut s.depth,
+                &mut s.ids,
+                &mut s.farthest,
+            );
+            clear_outside::<S>(size, &mut s.depth, &mut s.ids);
+        });
+        if let Some(shading) = &self.shading {
+            self.shade::<S>(shading, origin_px, scratch);
+            scratch.measure(Step::Display, |s| {
+                display::encode(self.level, &s.color, &mut s.bytes);
+                copy_out::<S, u8, 3>(tile, size, view.width, row.picture, &*s.bytes);
+            });
+        }
+        if self.resolves || self.reduces {
+            scratch.measure(Step::Resolve, |s| s.objects.fill(self.chunks, &s.ids));
+        }
+        if self.resolves {
+            scratch.measure(Step::Resolve, |s| {
+                let objects = &s.objects;
+                resolve::<S>(
+                    self.level,
+                    &objects.of_sample,
+                    &objects.uniform,
+                    &s.depth,
+                    view.near_m,
+                    &mut s.resolved,
+                );
+                let resolved = &s.resolved;
+                copy_out::<S, u16, 1>(
+                    tile,
+                    size,
+                    view.width,
+                    row.object_ids,
+                    resolved.object.as_chunks().0,
+                );
+                copy_out::<S, f32, 1>(
+                    tile,
+                    size,
+                    view.width,
+                    row.depth_m,
+                    resolved.distance_m.as_chunks().0,
+                );
+            });
+        }
+        if self.reduces {
+            scratch
+                .measure(Step::Reduce, |s| reduce::reduce::<S>(&s.objects, origin_px, &mut s.sums));
+        }
+    }
+
+    fn shade<const S: usize>(
+        &self,
+        shading: &Shading<'_>,
+        origin_px: [u32; 2],
+        scratch: &mut Scratch,
+    ) {
+        let view = &self.list.view;
+        scratch.measure(Step::Fragments, |s| {
+            let visible = Visible {
+                chunks: self.chunks,
+                ids: &s.ids,
+                depth: &s.depth,
+                origin_px,
+                focal_px: view.fx.max(view.fy),
+            };
+            s.fragments.gather::<S>(self.list.draws.len(), &visible);
+            for (sum, background) in s.color.iter_mut().zip(shading.background) {
+                for (sum, share) in sum.iter_mut().zip(&s.fragments.background) {
+                    *sum = background * share;
+                }
+            }
+        });
+        scratch.measure(Step::Shade, |s| {
+            if let Some((low, high)) = self.tile_box(origin_px, &s.depth) {
+                shading.stage.lighting.reaching(low, high, &mut s.reaching);
+            }
+            for bucket in &s.fragments.buckets {
+                let draw = &self.list.draws[bucket.draw as usize];
+                let drawn = DrawnSurface {
+                    surface: &shading.surfaces[draw.material as usize],
+                    double_sided: draw.double_sided,
+                    mirrored: self.placed.mirrored[draw.object as usize],
+                };
+                let end = bucket.start + bucket.len.next_multiple_of(LANES);
+                let fragments = &s.fragments.ordered[bucket.start..end];
+                shade(self.level, &shading.stage, drawn, &s.reaching, fragments, &mut s.color);
+            }
+        });
+    }
+
+    /// A view-space box round everything that a tile shows; nothing if it shows nothing.
+    fn tile_box(&self, origin_px: [u32; 2], depth: &[f32]) -> Option<([f32; 3], [f32; 3])> {
+        let view = &self.list.view;
+        let (mut far, mut near) = (F32x8::splat(f32::MAX), F32x8::ZERO);
+        for eight in depth.chunks_exact(LANES) {
+            let z = F32x8::load(eight);
+            near = near.max(z);
+            far = far.min(z.gt(F32x8::ZERO).select(z, far));
+        }
+        let (near, far) = (near.largest(), far.smallest());
+        if near <= 0.0 {
+            return None;
+        }
+        let distance = [view.near_m / near * 0.9999, view.near_m / far * 1.0001];
+        let px = |i: usize, end: u32| (origin_px[i] + end) as f32;
+        let x = [0, TILE as u32].map(|end| (px(0, end) - view.cx) / view.fx);
+        let y = [TILE as u32, 0].map(|end| (view.cy - px(1, end)) / view.fy);
+        let low = |v: f32| (v * distance[0]).min(v * distance[1]);
+        let high = |v: f32| (v * distance[0]).max(v * distance[1]);
+        Some(([low(x[0]), low(y[0]), -distance[1]], [high(x[1]), high(y[1]), -distance[0]]))
+    }
+}
+
+/// Empties the samples beyond the picture's right and lower border.
+fn clear_outside<const S: usize>(size: [usize; 2], depth: &mut [f32], ids: &mut [u32]) {
+    if size == [TILE; 2] {
+        return;
+    }
+    for (slot, xy) in Layout::<S>::SLOT_XY.iter().enumerate() {
+        if usize::from(xy[0]) >= size[0] || usize::from(xy[1]) >= size[1] {
+            depth[slot * S..(slot + 1) * S].fill(0.0);
+            ids[slot * S..(slot + 1) * S].fill(NOTHING);
+        }
+    }
+}
+
+/// Copies the pixel slots of a tile to their places in a row of tiles.
+fn copy_out<const S: usize, T: Copy, const N: usize>(
+    tile: [u32; 2],
+    size: [usize; 2],
+    width: u32,
+    row: &mut [T],
+    slots: &[[T; N]],
+) {
+    let left = tile[0] as usize * TILE;
+    let side = Layout::<S>::BLOCK_PX as usize;
+    for y in 0..size[1] {
+        let start = (y * width as usize + left) * N;
+        let (line, _) = row[start..start + size[0] * N].as_chunks_mut::<N>();
+        for (block, pixels) in line.chunks_mut(side).enumerate() {
+            let from = Layout::<S>::slot(block * side, y);
+            pixels.copy_from_slice(&slots[from..from + pixels.len()]);
+        }
+    }
+}
