@@ -4,5 +4,8 @@
 //! content hashes are what scenes and manifests hold. What a frame shows is not decided here.
 
 pub mod clip;
+mod folder;
 pub mod mesh;
+mod procedural;
 pub mod texture;
+pub mod textures;
