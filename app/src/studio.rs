@@ -10,6 +10,7 @@ use figurant_core::engine::cpu::{CpuEngine, CpuOptions, SimdChoice};
 use figurant_core::export::{AssetLicence, DatasetInfo, PictureFormat};
 use figurant_core::job::{FrameError, Studio};
 use figurant_core::library::Library;
+use figurant_core::library::textures::TextureGroup;
 
 use crate::road::{Job, LoadError, Road, Simd, Wishes};
 
@@ -57,7 +58,7 @@ impl Road for Native {
 
     fn engine(&self, simd: Simd) -> String {
         let engine = CpuEngine::new(CpuOptions { simd: choice(simd), ..CpuOptions::default() });
-        format!("cpu, {}", engine.instruction_set())
+        format!("cpu, {}", engine.simd_name())
     }
 
     fn built_in_assets(&self) -> Result<Vec<String>, String> {
@@ -67,8 +68,8 @@ impl Road for Native {
             format!("{} motion clips", library.clips.ids().count()),
             format!(
                 "{} textures and {} cloth patterns",
-                library.textures.surfaces().len(),
-                library.textures.cloths().len()
+                library.surface_textures().len(),
+                library.textures.ids(TextureGroup::Cloth).len()
             ),
         ])
     }
@@ -136,7 +137,7 @@ fn info(Loaded { document, library }: &Loaded) -> DatasetInfo {
             .into_iter()
             .map(|l| AssetLicence {
                 id: l.id,
-                content_hash: l.content_hash,
+                content_hash: None,
                 licence: l.licence.to_owned(),
                 source: l.source.to_owned(),
             })

@@ -28,7 +28,7 @@ pub use abi::DrawList;
 use crate::base::space::exposure_from_ev100;
 use crate::library::Library;
 use crate::library::clip::ClipError;
-use crate::library::texture::TextureError;
+use crate::library::textures::TextureError;
 use crate::scene::{Camera, Scene};
 use frustum::Frustum;
 

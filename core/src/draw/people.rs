@@ -14,6 +14,7 @@ use crate::geometry::person::{self, Dressed, RestBody};
 use crate::geometry::points;
 use crate::geometry::pose::PosedSkeleton;
 use crate::library::Library;
+use crate::library::figure::LOD_COUNT;
 use crate::scene::Person;
 
 /// How much of a limb's thickness may lie in front of a keypoint before it counts as hidden: limbs
@@ -109,13 +110,13 @@ fn relevance(drawing: &Drawing, posed: &Posed) -> Relevance {
 /// The coarsest level whose error stays below the wanted one at the person's nearest point; who
 /// only casts a shadow gets the coarsest of all.
 fn level_of_detail(drawing: &Drawing, posed: &Posed, relevance: Relevance) -> usize {
-    let errors_m = drawing.library.figure.lod_errors_m();
+    let figure = &drawing.library.figure;
     if !relevance.in_view {
-        return errors_m.len() - 1;
+        return LOD_COUNT - 1;
     }
     let px_per_m = drawing.px_per_m(posed.center_in_view, posed.radius_m) * posed.scale;
-    let fine_enough = |error_m: f64| error_m * px_per_m <= drawing.options.lod_error_px;
-    errors_m.iter().rposition(|&e| fine_enough(e)).unwrap_or(0)
+    let error_px = |lod: usize| f64::from(figure.lod_error_m(lod)) * px_per_m;
+    (0..LOD_COUNT).rev().find(|&l| error_px(l) <= drawing.options.lod_error_px).unwrap_or(0)
 }
 
 fn add_mesh(

@@ -59,8 +59,8 @@ impl Surfaces {
         let detail_map = self.optional(surface.detail, library, list)?;
         let mask = match surface.mask {
             Mask::None => None,
-            Mask::Skin => Some(self.shared("figure/skin_mask", list, || library.figure.skin_mask())),
-            Mask::Eye => Some(self.shared("figure/eye_mask", list, || library.figure.eye_mask())),
+            Mask::Skin => Some(self.shared("figure/skin_mask", list, || Arc::clone(library.figure.skin_mask()))),
+            Mask::Eye => Some(self.shared("figure/eye_mask", list, || Arc::clone(library.figure.eye_mask()))),
         };
         let made = abi::Material {
             base_color: surface.base_color,
@@ -102,7 +102,7 @@ impl Surfaces {
         library: &Library,
         list: &mut DrawList,
     ) -> Result<Option<u32>, DrawError> {
-        let normal_id = library.textures.normal_map_of(id);
+        let normal_id = library.textures.normal_map(id);
         self.optional(normal_id.as_deref(), library, list)
     }
 

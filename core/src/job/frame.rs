@@ -12,6 +12,7 @@ use crate::draw::{self, DrawError, DrawOptions, Drawn};
 use crate::engine::{Engine, EngineError};
 use crate::label;
 use crate::library::Library;
+use crate::library::textures::TextureGroup;
 use crate::plan::{Frame, Outputs, Pass, PassPlan, SceneFacts, StageTimes};
 use crate::sampling::{self, Catalogue, SampleError};
 use crate::scene::Scene;
@@ -112,8 +113,8 @@ fn catalogue(library: &Library) -> Catalogue {
     Catalogue {
         face_targets: library.figure.face_target_names().to_vec(),
         clips: library.clips.ids().map(str::to_owned).collect(),
-        textures: library.textures.surfaces().to_vec(),
-        cloth_patterns: library.textures.cloths().to_vec(),
+        textures: library.surface_textures(),
+        cloth_patterns: library.textures.ids(TextureGroup::Cloth).to_vec(),
     }
 }
 

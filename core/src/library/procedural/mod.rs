@@ -1,0 +1,342 @@
+//! Textures that are computed: patterns, surfaces, pictures, cloth and fine detail.
+//!
+//! In: an id such as `procedural/brick/07`. Out: a texture that tiles, always the same one for the
+//! same id, on every machine: the id is the only seed, and all numbers come from plain arithmetic.
+//! What a frame shows, and files, are not known here.
+
+mod canvas;
+mod cloth;
+mod detail;
+mod dice;
+mod field;
+mod letters;
+mod pattern;
+mod picture;
+mod plant;
+mod surface;
+
+use canvas::Canvas;
+use dice::Dice;
+use field::Field;
+
+use super::texture::{Encoding, Texture};
+
+/// What a generator paints.
+struct Painting {
+    color: Canvas,
+    /// Height over the surface in pixels, where the surface is not flat.
+    height: Option<Field>,
+}
+
+impl From<Canvas> for Painting {
+    fn from(color: Canvas) -> Self {
+        Self { color, height: None }
+    }
+}
+
+/// Kinds of computed textures, each the first part of its ids.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Kind {
+    /// For walls, floors and objects.
+    Procedural,
+    /// For garments.
+    Cloth,
+    /// Fine structure, plain numbers.
+    Detail,
+}
+
+/// A generator with its number of variants.
+struct Family {
+    kind: Kind,
+    name: &'static str,
+    variants: u32,
+    /// Whether it has a height, and so a normal map.
+    relief: bool,
+    paint: fn(&mut Dice) -> Painting,
+}
+
+const fn wall(name: &'static str, variants: u32, paint: fn(&mut Dice) -> Painting) -> Family {
+    Family { kind: Kind::Procedural, name, variants, relief: false, paint }
+}
+
+const fn relief(name: &'static str, variants: u32, paint: fn(&mut Dice) -> Painting) -> Family {
+    Family { kind: Kind::Procedural, name, variants, relief: true, paint }
+}
+
+const fn cloth(name: &'static str, variants: u32, paint: fn(&mut Dice) -> Painting) -> Family {
+    Family { kind: Kind::Cloth, name, variants, relief: false, paint }
+}
+
+const fn detail(name: &'static str, paint: fn(&mut Dice) -> Painting) -> Family {
+    Family { kind: Kind::Detail, name, variants: 1, relief: false, paint }
+}
+
+/// All generators, by kind and name. Names and their numbers are for ever: scenes hold them.
+const FAMILIES: [Family; 50] = [
+    relief("bark", 8, plant::bark),
+    wall("bokeh", 12, picture::bokeh),
+    relief("brick", 16, surface::brick),
+    wall("camouflage", 10, pattern::camouflage),
+    wall("carpet", 12, pattern::carpet),
+    wall("checker", 10, pattern::checker),
+    wall("clouds", 12, picture::clouds),
+    wall("collage", 24, picture::collage),
+    wall("dots", 12, pattern::dots),
+    wall("facade", 24, picture::facade),
+    wall("floral", 16, plant::floral),
+    wall("gradient", 16, pattern::gradient),
+    wall("graffiti", 20, picture::graffiti),
+    wall("grass", 10, plant::grass),
+    wall("groceries", 32, picture::groceries),
+    relief("ground", 12, surface::ground),
+    relief("grunge", 18, surface::grunge),
+    wall("heap", 16, picture::heap),
+    wall("lake", 24, picture::lake),
+    wall("leaves", 14, plant::leaves),
+    wall("marble", 14, surface::marble),
+    relief("metal", 12, surface::metal),
+    wall("motif", 12, pattern::motif),
+    wall("noise", 20, pattern::noise),
+    wall("plaid", 16, pattern::plaid),
+    wall("shelf", 24, picture::shelf),
+    wall("sign", 16, picture::sign),
+    wall("stripes", 16, pattern::stripes),
+    wall("terrazzo", 10, surface::terrazzo),
+    wall("text", 16, picture::text),
+    relief("tiles", 16, surface::tiles),
+    relief("voronoi", 16, surface::voronoi),
+    wall("waves", 16, pattern::waves),
+    relief("weave", 12, pattern::weave),
+    relief("wood", 18, surface::wood),
+    cloth("batik", 6, cloth::batik),
+    cloth("camouflage", 6, cloth::camouflage),
+    cloth("checks", 6, cloth::checks),
+    cloth("denim", 6, cloth::denim),
+    cloth("dots", 6, cloth::dots),
+    cloth("fleece", 3, cloth::fleece),
+    cloth("floral", 8, cloth::floral),
+    cloth("heather", 6, cloth::heather),
+    cloth("herringbone", 4, cloth::herringbone),
+    Family { relief: true, ..cloth("knit", 8, cloth::knit) },
+    Family { relief: true, ..cloth("leather", 4, cloth::leather) },
+    cloth("pinstripe", 4, cloth::pinstripe),
+    cloth("plaid", 8, cloth::plaid),
+    cloth("plain", 4, cloth::plain),
+    cloth("stripes", 10, cloth::stripes),
+];
+
+/// Fine detail, one texture each.
+const DETAILS: [Family; 3] =
+    [detail("cloth", detail::cloth), detail("hair", detail::hair), detail("skin", detail::skin)];
+
+impl Kind {
+    const fn prefix(self) -> &'static str {
+        match self {
+            Self::Procedural => "procedural",
+            Self::Cloth => "cloth",
+            Self::Detail => "detail",
+        }
+    }
+
+    const fn encoding(self) -> Encoding {
+        match self {
+            Self::Procedural | Self::Cloth => Encoding::Srgb,
+            Self::Detail => Encoding::Linear,
+        }
+    }
+}
+
+impl Family {
+    fn id(&self, variant: u32) -> String {
+        match self.kind {
+            Kind::Detail => format!("{}/{}", self.kind.prefix(), self.name),
+            _ => format!("{}/{}/{variant:02}", self.kind.prefix(), self.name),
+        }
+    }
+
+    fn ids(&self) -> impl Iterator<Item = String> + '_ {
+        (0..self.variants).map(|v| self.id(v))
+    }
+}
+
+fn families() -> impl Iterator<Item = &'static Family> {
+    FAMILIES.iter().chain(&DETAILS)
+}
+
+/// All ids of a kind, in order.
+pub(super) fn ids(kind: Kind) -> Vec<String> {
+    families().filter(|f| f.kind == kind).flat_map(Family::ids).collect()
+}
+
+/// The normal map of a computed texture, where it has one: `normal/` before its id, `procedural/`
+/// left out.
+pub(super) fn normal_id(id: &str) -> Option<String> {
+    let family = family_of(id)?;
+    family.relief.then(|| format!("normal/{}", id.strip_prefix("procedural/").unwrap_or(id)))
+}
+
+/// All ids of normal maps, in order.
+pub(super) fn normal_ids() -> Vec<String> {
+    let mut ids: Vec<String> =
+        families().flat_map(Family::ids).filter_map(|id| normal_id(&id)).collect();
+    ids.sort();
+    ids
+}
+
+fn family_of(id: &str) -> Option<&'static Family> {
+    families().find(|f| {
+        let name = id.strip_prefix(f.kind.prefix()).and_then(|rest| rest.strip_prefix('/'));
+        name.and_then(|rest| rest.strip_prefix(f.name)).is_some_and(|variant| {
+            (variant.is_empty() || variant.starts_with('/')) && f.ids().any(|known| known == id)
+        })
+    })
+}
+
+/// The texture of an id, or nothing if there is none of that name.
+pub(super) fn generate(id: &str) -> Option<Texture> {
+    let paint = |id: &str| family_of(id).map(|f| (f, (f.paint)(&mut Dice::new(id))));
+    let Some(of) = id.strip_prefix("normal/") else {
+        let (family, painting) = paint(id)?;
+        return Some(painting.color.into_texture(family.kind.encoding()));
+    };
+    let (_, painting) = paint(of).or_else(|| paint(&format!("procedural/{of}")))?;
+    painting.height.map(|height| normals(&height).into_texture(Encoding::Linear))
+}
+
+/// Tangent-space normals of a height: x along +u, y along -v (up in the picture), z outwards,
+/// each as (n + 1) / 2.
+fn normals(height: &Field) -> Canvas {
+    Canvas::from_fn(|x, y| {
+        let (x, y) = (x as i32, y as i32);
+        let along_u = (height.at(x + 1, y) - height.at(x - 1, y)) * 0.5;
+        let along_v = (height.at(x, y + 1) - height.at(x, y - 1)) * 0.5;
+        let n = [-along_u, along_v, 1.0];
+        let length = (n[0] * n[0] + n[1] * n[1] + 1.0).sqrt();
+        n.map(|v| 0.5 + 0.5 * v / length)
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::canvas::{LOG2_SIDE, SIDE};
+    use super::*;
+
+    /// One texture of each family, and one of each normal map.
+    fn samples() -> Vec<(String, Texture)> {
+        let mut ids: Vec<String> = families().map(|f| f.id(f.variants / 2)).collect();
+        ids.extend(ids.clone().iter().filter_map(|id| normal_id(id)));
+        ids.into_iter().map(|id| (id.clone(), generate(&id).unwrap())).collect()
+    }
+
+    fn row(texture: &Texture, y: usize) -> impl Iterator<Item = [u8; 4]> + '_ {
+        texture.texels[y * SIDE..(y + 1) * SIDE].iter().map(|t| t.to_le_bytes())
+    }
+
+    fn difference(a: [u8; 4], b: [u8; 4]) -> f64 {
+        a.iter().zip(b).map(|(&a, b)| f64::from(a.abs_diff(b))).sum()
+    }
+
+    #[test]
+    fn names_are_in_order_and_there_are_enough_of_them() {
+        let sorted = |ids: Vec<String>| {
+            assert!(ids.is_sorted(), "{ids:?}");
+            assert!(ids.windows(2).all(|w| w[0] != w[1]));
+            ids.len()
+        };
+        assert!(sorted(ids(Kind::Procedural)) > 500);
+        assert!(sorted(ids(Kind::Cloth)) > 80);
+        assert!(sorted(normal_ids()) > 100);
+        assert_eq!(ids(Kind::Detail), ["detail/cloth", "detail/hair", "detail/skin"]);
+        for family in families().filter(|f| f.kind == Kind::Procedural) {
+            assert!(family.variants >= 8, "{}", family.name);
+        }
+    }
+
+    #[test]
+    fn only_known_ids_are_generated() {
+        for id in [
+            "",
+            "procedural",
+            "procedural/brick",
+            "procedural/brick/99",
+            "procedural/brick/7",
+            "procedural/brick/07/",
+            "cloth/plain/00x",
+            "normal/plaid/00",
+            "normal/",
+            "detail/skin/00",
+            "brick/07",
+        ] {
+            assert!(generate(id).is_none(), "{id}");
+        }
+        assert_eq!(normal_id("procedural/brick/07").as_deref(), Some("normal/brick/07"));
+        assert_eq!(normal_id("cloth/knit/01").as_deref(), Some("normal/cloth/knit/01"));
+        assert_eq!(normal_id("procedural/plaid/00"), None);
+    }
+
+    #[test]
+    fn every_family_tiles_and_shows_something() {
+        for (id, texture) in samples() {
+            assert_eq!(texture.log2_size, LOG2_SIDE);
+            let rows: Vec<Vec<[u8; 4]>> = (0..SIDE).map(|y| row(&texture, y).collect()).collect();
+            let across = |x: usize| -> f64 {
+                (0..SIDE).map(|y| difference(rows[y][x], rows[y][(x + 1) % SIDE])).sum()
+            };
+            let down = |y: usize| -> f64 {
+                (0..SIDE).map(|x| difference(rows[y][x], rows[(y + 1) % SIDE][x])).sum()
+            };
+            // The seam may be an edge of the pattern, but not a worse one than those inside.
+            let worst = |step: &dyn Fn(usize) -> f64| (0..SIDE - 1).map(step).fold(0.0, f64::max);
+            let (wx, wy) = (worst(&across), worst(&down));
+            assert!(across(SIDE - 1) <= wx * 1.1 + 512.0, "{id}: {} {wx}", across(SIDE - 1));
+            assert!(down(SIDE - 1) <= wy * 1.1 + 512.0, "{id}: {} {wy}", down(SIDE - 1));
+            let mut tones: Vec<[u8; 4]> = rows.concat();
+            tones.sort_unstable();
+            tones.dedup();
+            assert!(tones.len() > 15, "{id} has {} tones", tones.len());
+        }
+    }
+
+    #[test]
+    fn the_same_id_is_the_same_texture_and_another_is_another() {
+        for family in families() {
+            let first = generate(&family.id(0)).unwrap();
+            assert_eq!(first, generate(&family.id(0)).unwrap(), "{}", family.name);
+            if family.variants > 1 {
+                assert_ne!(first, generate(&family.id(1)).unwrap(), "{}", family.name);
+            }
+        }
+    }
+
+    #[test]
+    fn cloth_is_light_and_detail_lies_round_the_middle() {
+        for (kind, range) in [(Kind::Cloth, 120.0..250.0), (Kind::Detail, 120.0..136.0)] {
+            for id in ids(kind) {
+                let texture = generate(&id).unwrap();
+                let sum: f64 = texture.texels[..SIDE * SIDE]
+                    .iter()
+                    .map(|t| f64::from(t.to_le_bytes()[1]))
+                    .sum();
+                let mean = sum / (SIDE * SIDE) as f64;
+                assert!(range.contains(&mean), "{id}: {mean}");
+            }
+        }
+    }
+
+    #[test]
+    fn normals_are_unit_point_outwards_and_follow_the_height() {
+        // A ridge along v: its left flank faces left, its right one right.
+        let ridge = Field::from_fn(|x, _| -((x as f32) - 256.0).abs());
+        let canvas = normals(&ridge);
+        let at = |x: usize, y: usize| canvas.0[y * SIDE + x].map(|v| 2.0 * v - 1.0);
+        assert!(at(100, 50)[0] < -0.7 && at(400, 50)[0] > 0.7);
+        let fall = normals(&Field::from_fn(|_, y| -(y as f32)));
+        assert!(fall.0[100 * SIDE + 7][1] < 0.2, "falling downwards faces downwards");
+        for id in normal_ids().iter().step_by(17) {
+            for t in &generate(id).unwrap().texels[..SIDE * SIDE] {
+                let [x, y, z, _] = t.to_le_bytes().map(|v| f64::from(v) / 127.5 - 1.0);
+                assert!(z > 0.0 && ((x * x + y * y + z * z).sqrt() - 1.0).abs() < 0.02, "{id}");
+            }
+        }
+    }
+}

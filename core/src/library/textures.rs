@@ -1,0 +1,457 @@
+//! All textures by id: the computed ones, and pictures in users' folders.
+//!
+//! | ids | what |
+//! |---|---|
+//! | `procedural/<family>/<nn>` | sRGB, tiles: for walls, floors and objects |
+//! | `cloth/<family>/<nn>` | sRGB, tiles, light: multiplied by a garment's colour |
+//! | `detail/<skin, hair, cloth>` | plain numbers round 0.5, tiles |
+//! | `normal/<...>` | plain numbers, normals of the computed texture of that name |
+//! | `folder/<folder>/<file>` | sRGB, a user's JPEG or PNG by its path below the folder |
+//!
+//! Nothing is computed or opened before it is asked for; what was used last is kept up to a limit
+//! of memory. A texture's pixels do not depend on what was asked for before.
+
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+use super::folder;
+use super::procedural::{self, Kind};
+use super::texture::Texture;
+use crate::base::hash::content_hash;
+
+/// Default of [`TextureLibrary::with_memory_limit`]: about 380 textures of 512 x 512.
+const DEFAULT_LIMIT_BYTES: usize = 512 << 20;
+/// Default of [`TextureLibrary::with_max_size`]: 512 x 512.
+const DEFAULT_LOG2_SIZE: u32 = 9;
+/// No texture is larger than 4096 x 4096.
+const LARGEST_LOG2_SIZE: u32 = 12;
+
+/// Kinds of textures.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum TextureGroup {
+    /// Computed, for walls, floors and objects.
+    Procedural,
+    /// Computed, for garments.
+    Cloth,
+    /// Computed fine structure, plain numbers.
+    Detail,
+    /// Computed normal maps, plain numbers.
+    Normal,
+    /// Users' pictures.
+    Folder,
+}
+
+/// What can be wrong with textures.
+#[derive(Debug, thiserror::Error)]
+#[expect(missing_docs, reason = "the messages say it")]
+pub enum TextureError {
+    #[error("there is no texture \"{id}\"{}", suggestion(nearest))]
+    Unknown { id: String, nearest: Option<String> },
+    #[error("texture folder {} does not exist; check the path", path.display())]
+    Missing { path: PathBuf },
+    #[error("texture folder {} is not a folder; name the folder that holds the pictures", path.display())]
+    NotAFolder { path: PathBuf },
+    #[error("texture folder {} holds no .jpg, .jpeg or .png file; add pictures or drop the folder", path.display())]
+    Empty { path: PathBuf },
+    #[error("{} cannot be read: {source}", path.display())]
+    Unreadable { path: PathBuf, source: std::io::Error },
+    #[error("{} is not a usable picture: {what}; replace or remove it", path.display())]
+    Broken { path: PathBuf, what: String },
+    #[error("{} is too large: {what}; scale it down", path.display())]
+    TooLarge { path: PathBuf, what: String },
+}
+
+fn suggestion(nearest: &Option<String>) -> String {
+    nearest.as_ref().map_or_else(String::new, |id| format!("; did you mean \"{id}\"?"))
+}
+
+/// All textures by id.
+///
+/// Shared by reference between threads; ids do not change over its life.
+#[derive(Debug)]
+pub struct TextureLibrary {
+    procedural: Vec<String>,
+    cloth: Vec<String>,
+    detail: Vec<String>,
+    normal: Vec<String>,
+    folder: Vec<String>,
+    paths: BTreeMap<String, PathBuf>,
+    max_log2_size: u32,
+    limit_bytes: usize,
+    cache: Mutex<Cache>,
+}
+
+#[derive(Debug, Default)]
+struct Cache {
+    entries: BTreeMap<String, Entry>,
+    /// Content hashes of pictures that were read, as 64 hexadecimal digits.
+    hashes: BTreeMap<String, String>,
+    size_bytes: usize,
+    clock: u64,
+}
+
+#[derive(Debug)]
+struct Entry {
+    texture: Arc<Texture>,
+    last_used: u64,
+}
+
+impl TextureLibrary {
+    /// The computed textures, and the pictures below some folders, listed by name and not opened.
+    ///
+    /// A picture's id is `folder/`, the name of its folder, and its path from there; a second
+    /// folder of the same name is called `name~2`.
+    ///
+    /// # Errors
+    /// When a folder is missing, is none, cannot be read, or holds no picture.
+    pub fn new(folders: &[PathBuf]) -> Result<Self, TextureError> {
+        let mut library = Self {
+            procedural: procedural::ids(Kind::Procedural),
+            cloth: procedural::ids(Kind::Cloth),
+            detail: procedural::ids(Kind::Detail),
+            normal: procedural::normal_ids(),
+            folder: Vec::new(),
+            paths: BTreeMap::new(),
+            max_log2_size: DEFAULT_LOG2_SIZE,
+            limit_bytes: DEFAULT_LIMIT_BYTES,
+            cache: Mutex::default(),
+        };
+        let mut names: Vec<String> = Vec::new();
+        for path in folders {
+            let files = folder::list(path)?;
+            let own = path
+                .file_name()
+                .map_or_else(|| "pictures".to_owned(), |n| n.to_string_lossy().into_owned());
+            let mut name = own.clone();
+            let mut count = 1;
+            while names.contains(&name) {
+                count += 1;
+                name = format!("{own}~{count}");
+            }
+            for (file, path) in files {
+                library.paths.insert(format!("folder/{name}/{file}"), path);
+            }
+            names.push(name);
+        }
+        library.folder = library.paths.keys().cloned().collect();
+        Ok(library)
+    }
+
+    /// Sets how much memory textures may occupy before the one used longest ago is dropped, bytes.
+    /// The last one always stays.
+    #[must_use]
+    pub const fn with_memory_limit(mut self, bytes: usize) -> Self {
+        self.limit_bytes = bytes;
+        self
+    }
+
+    /// Sets the largest side of users' pictures as textures, as its log2, at most 12.
+    #[must_use]
+    pub fn with_max_size(mut self, log2_size: u32) -> Self {
+        self.max_log2_size = log2_size.min(LARGEST_LOG2_SIZE);
+        self
+    }
+
+    /// All ids of a group, in order.
+    #[must_use]
+    pub fn ids(&self, group: TextureGroup) -> &[String] {
+        match group {
+            TextureGroup::Procedural => &self.procedural,
+            TextureGroup::Cloth => &self.cloth,
+            TextureGroup::Detail => &self.detail,
+            TextureGroup::Normal => &self.normal,
+            TextureGroup::Folder => &self.folder,
+        }
+    }
+
+    /// Whether there is a texture of that id.
+    #[must_use]
+    pub fn contains(&self, id: &str) -> bool {
+        self.all_groups().any(|ids| ids.binary_search_by(|known| known.as_str().cmp(id)).is_ok())
+    }
+
+    /// The id of the normal map that belongs to a texture, where there is one.
+    #[must_use]
+    pub fn normal_map(&self, id: &str) -> Option<String> {
+        procedural::normal_id(id)
+    }
+
+    /// The texture of an id.
+    ///
+    /// # Errors
+    /// When there is none of that id, or its file cannot be read or used.
+    pub fn get(&self, id: &str) -> Result<Arc<Texture>, TextureError> {
+        if let Some(texture) = self.cached(id) {
+            return Ok(texture);
+        }
+        // Made outside the lock: others need not wait. If two threads make the same one, both get
+        // the same bytes and one copy is kept.
+        let (texture, hash) = match self.paths.get(id) {
+            Some(path) => {
+                let bytes = folder::read(path)?;
+                let texture = folder::decode(path, &bytes, self.max_log2_size)?;
+                (texture, Some(content_hash(&bytes)))
+            }
+            None => (procedural::generate(id).ok_or_else(|| self.unknown(id))?, None),
+        };
+        Ok(self.keep(id, Arc::new(texture), hash))
+    }
+
+    /// What identifies a texture's content whatever its path: the BLAKE3 hash of a picture file as
+    /// 64 hexadecimal digits, the id itself of a computed texture.
+    ///
+    /// # Errors
+    /// When there is none of that id, or its file cannot be read.
+    pub fn content_hash(&self, id: &str) -> Result<String, TextureError> {
+        let Some(path) = self.paths.get(id) else {
+            return if self.contains(id) { Ok(id.to_owned()) } else { Err(self.unknown(id)) };
+        };
+        if let Some(hash) = self.lock().hashes.get(id) {
+            return Ok(hash.clone());
+        }
+        let hash = content_hash(&folder::read(path)?);
+        self.lock().hashes.insert(id.to_owned(), hash.clone());
+        Ok(hash)
+    }
+
+    /// Bytes that the kept textures occupy.
+    #[must_use]
+    pub fn memory_bytes(&self) -> usize {
+        self.lock().size_bytes
+    }
+
+    fn all_groups(&self) -> impl Iterator<Item = &[String]> {
+        [&self.procedural, &self.cloth, &self.detail, &self.normal, &self.folder]
+            .into_iter()
+            .map(Vec::as_slice)
+    }
+
+    fn unknown(&self, id: &str) -> TextureError {
+        // By score, then by place in the list: the first of equals.
+        let mut best = (0.7, None);
+        for known in self.all_groups().flatten() {
+            let score = strsim::jaro_winkler(id, known);
+            if score > best.0 {
+                best = (score, Some(known.clone()));
+            }
+        }
+        TextureError::Unknown { id: id.to_owned(), nearest: best.1 }
+    }
+
+    /// A thread that panicked leaves at worst a texture uncounted: the cache stays usable.
+    fn lock(&self) -> MutexGuard<'_, Cache> {
+        self.cache.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn cached(&self, id: &str) -> Option<Arc<Texture>> {
+        let mut cache = self.lock();
+        cache.clock += 1;
+        let now = cache.clock;
+        cache.entries.get_mut(id).map(|entry| {
+            entry.last_used = now;
+            Arc::clone(&entry.texture)
+        })
+    }
+
+    fn keep(&self, id: &str, texture: Arc<Texture>, hash: Option<String>) -> Arc<Texture> {
+        let mut cache = self.lock();
+        if let Some(hash) = hash {
+            cache.hashes.insert(id.to_owned(), hash);
+        }
+        if let Some(entry) = cache.entries.get(id) {
+            return Arc::clone(&entry.texture);
+        }
+        cache.clock += 1;
+        cache.size_bytes += texture.size_bytes();
+        let entry = Entry { texture: Arc::clone(&texture), last_used: cache.clock };
+        cache.entries.insert(id.to_owned(), entry);
+        while cache.size_bytes > self.limit_bytes && cache.entries.len() > 1 {
+            let oldest = cache
+                .entries
+                .iter()
+                .min_by_key(|(_, entry)| entry.last_used)
+                .map(|(id, _)| id.clone());
+            if let Some(entry) = oldest.and_then(|id| cache.entries.remove(&id)) {
+                cache.size_bytes -= entry.texture.size_bytes();
+            }
+        }
+        texture
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::io::Cursor;
+    use std::path::Path;
+
+    use image::{DynamicImage, ImageFormat};
+
+    use super::*;
+
+    fn library(folders: &[&Path]) -> Result<TextureLibrary, TextureError> {
+        TextureLibrary::new(&folders.iter().map(|p| p.to_path_buf()).collect::<Vec<_>>())
+    }
+
+    fn encoded(picture: &DynamicImage, format: ImageFormat) -> Vec<u8> {
+        let mut bytes = Cursor::new(Vec::new());
+        picture.write_to(&mut bytes, format).unwrap();
+        bytes.into_inner()
+    }
+
+    fn picture(width: u32, height: u32) -> DynamicImage {
+        image::RgbImage::from_fn(width, height, |x, y| image::Rgb([x as u8, y as u8, 77])).into()
+    }
+
+    /// A folder of files and what the library says of one of them.
+    fn get(name: &str, bytes: &[u8]) -> Result<Arc<Texture>, TextureError> {
+        let dir = tempfile::tempdir().unwrap();
+        std::fs::write(dir.path().join(name), bytes).unwrap();
+        let library = library(&[dir.path()]).unwrap();
+        library.get(&library.ids(TextureGroup::Folder)[0].clone())
+    }
+
+    #[test]
+    fn groups_hold_what_their_names_say_and_everything_listed_can_be_had() {
+        let library = library(&[]).unwrap();
+        for (group, prefix) in [
+            (TextureGroup::Procedural, "procedural/"),
+            (TextureGroup::Cloth, "cloth/"),
+            (TextureGroup::Detail, "detail/"),
+            (TextureGroup::Normal, "normal/"),
+        ] {
+            let ids = library.ids(group);
+            assert!(ids.iter().all(|id| id.starts_with(prefix) && library.contains(id)));
+            for id in ids.iter().step_by(53) {
+                library.get(id).unwrap();
+            }
+        }
+        assert!(library.ids(TextureGroup::Folder).is_empty());
+        let error = library.get("procedural/brik/07").unwrap_err().to_string();
+        assert!(error.contains("did you mean \"procedural/brick/07\""), "{error}");
+        for id in library.ids(TextureGroup::Procedural) {
+            if let Some(normal) = library.normal_map(id) {
+                assert!(library.contains(&normal), "{normal}");
+            }
+        }
+    }
+
+    #[test]
+    fn textures_are_shared_and_the_longest_unused_go_first() {
+        let one = library(&[]).unwrap().get("detail/skin").unwrap().size_bytes();
+        let library = library(&[]).unwrap().with_memory_limit(2 * one);
+        let skin = library.get("detail/skin").unwrap();
+        let hair = library.get("detail/hair").unwrap();
+        assert!(Arc::ptr_eq(&skin, &library.get("detail/skin").unwrap()));
+        library.get("detail/cloth").unwrap();
+        assert_eq!(library.memory_bytes(), 2 * one);
+        assert!(Arc::ptr_eq(&skin, &library.get("detail/skin").unwrap()));
+        let again = library.get("detail/hair").unwrap();
+        assert!(!Arc::ptr_eq(&hair, &again), "it was dropped");
+        assert_eq!(hair, again, "and is the same again");
+    }
+
+    #[test]
+    fn threads_that_ask_at_once_get_one_texture() {
+        let library = library(&[]).unwrap();
+        let got: Vec<_> = std::thread::scope(|scope| {
+            let asked: Vec<_> =
+                (0..4).map(|_| scope.spawn(|| library.get("cloth/plain/00").unwrap())).collect();
+            asked.into_iter().map(|t| t.join().unwrap()).collect()
+        });
+        let kept = library.get("cloth/plain/00").unwrap();
+        assert!(got.iter().all(|t| Arc::ptr_eq(t, &kept)));
+    }
+
+    #[test]
+    fn folders_are_listed_in_order_by_relative_path_and_not_opened() {
+        let dir = tempfile::tempdir().unwrap();
+        let root = dir.path().join("photos");
+        std::fs::create_dir_all(root.join("sub")).unwrap();
+        for name in ["b.JPG", "a.png", "sub/c.jpeg", "notes.txt", ".hidden.png"] {
+            std::fs::write(root.join(name), b"not read").unwrap();
+        }
+        let other = dir.path().join("more/photos");
+        std::fs::create_dir_all(&other).unwrap();
+        std::fs::write(other.join("d.png"), encoded(&picture(5, 3), ImageFormat::Png)).unwrap();
+        let library = library(&[&root, &other]).unwrap();
+        assert_eq!(
+            library.ids(TextureGroup::Folder),
+            [
+                "folder/photos/a.png",
+                "folder/photos/b.JPG",
+                "folder/photos/sub/c.jpeg",
+                "folder/photos~2/d.png"
+            ]
+        );
+        assert_eq!(library.get("folder/photos~2/d.png").unwrap().log2_size, 3);
+        let hash = library.content_hash("folder/photos~2/d.png").unwrap();
+        assert_eq!(hash, content_hash(&encoded(&picture(5, 3), ImageFormat::Png)));
+        assert!(matches!(library.get("folder/photos/a.png"), Err(TextureError::Broken { .. })));
+        assert_eq!(library.content_hash("cloth/plain/00").unwrap(), "cloth/plain/00");
+    }
+
+    #[test]
+    fn folders_that_cannot_be_used_are_named() {
+        let dir = tempfile::tempdir().unwrap();
+        let file = dir.path().join("file.png");
+        assert!(matches!(library(&[&dir.path().join("gone")]), Err(TextureError::Missing { .. })));
+        assert!(matches!(library(&[dir.path()]), Err(TextureError::Empty { .. })));
+        std::fs::write(&file, b"x").unwrap();
+        let error = library(&[&file]).unwrap_err();
+        assert!(matches!(error, TextureError::NotAFolder { .. }));
+        assert!(error.to_string().contains("file.png"), "{error}");
+    }
+
+    #[test]
+    fn pictures_of_all_kinds_are_read() {
+        let plain = picture(64, 64);
+        for (format, name) in
+            [(ImageFormat::Png, "a.png"), (ImageFormat::Jpeg, "a.jpg"), (ImageFormat::Png, "a.jpg")]
+        {
+            let t = get(name, &encoded(&plain, format)).unwrap();
+            assert_eq!(t.log2_size, 6);
+            let [r, g, b, a] = t.texels[10 * 64 + 50].to_le_bytes();
+            assert!(
+                r.abs_diff(50) < 8 && g.abs_diff(10) < 8 && b.abs_diff(77) < 8 && a == 255,
+                "{r} {g} {b}"
+            );
+        }
+        let grey = DynamicImage::from(plain.to_luma8());
+        assert!(get("a.png", &encoded(&grey, ImageFormat::Png)).is_ok());
+        assert!(get("a.jpg", &encoded(&grey, ImageFormat::Jpeg)).is_ok());
+        let deep = DynamicImage::from(plain.to_rgb16());
+        let t = get("a.png", &encoded(&deep, ImageFormat::Png)).unwrap();
+        assert_eq!(t.texels[10 * 64 + 50].to_le_bytes(), [50, 10, 77, 255]);
+        let clear = DynamicImage::from(plain.to_rgba16());
+        assert!(get("a.png", &encoded(&clear, ImageFormat::Png)).is_ok());
+        // Four inks, as printers write them.
+        let mut cmyk = Vec::new();
+        jpeg_encoder::Encoder::new(&mut cmyk, 95)
+            .encode(&[128; 4 * 64 * 64], 64, 64, jpeg_encoder::ColorType::Cmyk)
+            .unwrap();
+        let t = get("a.jpg", &cmyk).unwrap();
+        assert_eq!(t.log2_size, 6);
+    }
+
+    #[test]
+    fn damaged_and_oversized_pictures_are_refused_by_name() {
+        for (format, name) in [(ImageFormat::Png, "cut.png"), (ImageFormat::Jpeg, "cut.jpg")] {
+            let whole = encoded(&picture(100, 80), format);
+            assert!(get(name, &whole).is_ok());
+            for part in [0, 1, 10, whole.len() / 2, whole.len() - 2] {
+                // The last bytes of a PNG are a chunk without content.
+                if format == ImageFormat::Png && part == whole.len() - 2 {
+                    continue;
+                }
+                let error = get(name, &whole[..part]).expect_err(&format!("{name} cut to {part}"));
+                assert!(matches!(error, TextureError::Broken { .. }), "{error}");
+                assert!(error.to_string().contains(name), "{error}");
+            }
+        }
+        assert!(matches!(get("text.png", b"hello, world"), Err(TextureError::Broken { .. })));
+        let long = DynamicImage::new_luma8(folder::MAX_SIDE + 1, 1);
+        let error = get("long.png", &encoded(&long, ImageFormat::Png)).unwrap_err();
+        assert!(matches!(error, TextureError::TooLarge { .. }), "{error}");
+    }
+}
