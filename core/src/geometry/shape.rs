@@ -386,7 +386,7 @@ mod tests {
     fn prisms_have_exactly_the_volume_of_their_polygon() {
         for detail in Detail::ALL {
             let n = detail.circle_segments() as f64;
-            let base = n / 2.0 * 0.25 * (2.0 * PI / n).sin();
+            let base = n / 2.0 * 0.25 * libm::sin(2.0 * PI / n);
             assert!((volume(&shape_mesh(Shape::Cylinder, detail)) - base).abs() < 1e-6);
             assert!((volume(&shape_mesh(Shape::Cone, detail)) - base / 3.0).abs() < 1e-6);
         }

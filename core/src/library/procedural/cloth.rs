@@ -98,7 +98,8 @@ pub(super) fn checks(dice: &mut Dice) -> Painting {
     let size = dice.pick(&[16usize, 32, 32, 64]);
     let dark = palette(dice)[0];
     let canvas = Canvas::from_fn(|x, y| {
-        let both = usize::from(x / size % 2 == 0) + usize::from(y / size % 2 == 0);
+        let both =
+            usize::from((x / size).is_multiple_of(2)) + usize::from((y / size).is_multiple_of(2));
         mix(GROUND, dark, both as f32 * 0.42)
     });
     woven(dice, canvas, 0.06).into()
@@ -248,7 +249,7 @@ pub(super) fn herringbone(dice: &mut Dice) -> Painting {
     let soft = Field::fbm(dice, 64, 3);
     let mut canvas = Canvas::from_fn(|x, y| {
         let column = x / size;
-        let along = if column % 2 == 0 { x % size + y } else { size - 1 - x % size + y };
+        let along = if column.is_multiple_of(2) { x % size + y } else { size - 1 - x % size + y };
         let t = smooth(-0.3, 0.3, sin_turns(along as f32 / 8.0));
         [dark + (0.95 - dark) * t + 0.05 * soft.0[y * SIDE + x]; 3]
     });

@@ -53,14 +53,19 @@ impl Field {
     /// corner's share is a straight line in x, so a pixel costs two of them and a blend.
     fn add_octave(&mut self, dice: &mut Dice, columns: usize, rows: usize, amplitude: f32) {
         let gradients: Vec<[f32; 2]> = (0..columns * rows).map(|_| dice.direction()).collect();
-        let across: Vec<(usize, f32, f32)> = (0..SIDE)
-            .map(|x| {
-                let p = (x as f32 + 0.5) * columns as f32 / SIDE as f32;
-                let cell = (p as usize).min(columns - 1);
-                let u = p - cell as f32;
-                (cell, u, fade(u))
-            })
-            .collect();
+        // Where in its cell each column of pixels lies, and where each cell begins.
+        let mut across = Vec::with_capacity(SIDE);
+        let mut starts = Vec::with_capacity(columns + 1);
+        for x in 0..SIDE {
+            let p = (x as f32 + 0.5) * columns as f32 / SIDE as f32;
+            let cell = (p as usize).min(columns - 1);
+            let u = p - cell as f32;
+            across.push([u, fade(u)]);
+            if cell == starts.len() {
+                starts.push(x);
+            }
+        }
+        starts.push(SIDE);
         let mut lines = vec![[0.0f32; 2]; columns + 1];
         for y in 0..SIDE {
             let p = (y as f32 + 0.5) * rows as f32 / SIDE as f32;
@@ -77,11 +82,14 @@ impl Field {
                     amplitude * (a[0] + (b[0] - a[0]) * blend),
                 ];
             }
-            for (value, &(cell, u, t)) in self.0[y * SIDE..][..SIDE].iter_mut().zip(&across) {
-                let [a0, b0] = lines[cell];
-                let [a1, b1] = lines[cell + 1];
-                let (left, right) = (a0 + b0 * u, a1 + b1 * (u - 1.0));
-                *value += left + (right - left) * t;
+            let row = &mut self.0[y * SIDE..][..SIDE];
+            for (ends, corners) in starts.windows(2).zip(lines.windows(2)) {
+                let ([a0, b0], [a1, b1]) = (corners[0], corners[1]);
+                let cell = ends[0]..ends[1];
+                for (value, &[u, t]) in row[cell.clone()].iter_mut().zip(&across[cell]) {
+                    let (left, right) = (a0 + b0 * u, a1 + b1 * (u - 1.0));
+                    *value += left + (right - left) * t;
+                }
             }
         }
     }
@@ -156,6 +164,7 @@ impl Cells {
         self.points.len()
     }
 
+    /// What lies nearest to a place on the canvas, or up to one canvas beside it.
     pub fn near(&self, x: f32, y: f32) -> Near {
         let n = self.per_side;
         let size = SIDE as f32 / n as f32;
@@ -164,29 +173,39 @@ impl Cells {
         let (u, v) = (px - cx as f32, py - cy as f32);
         // The cell before, the own and the next, wrapped.
         let wrapped = |cell: i32| {
-            let own = cell.rem_euclid(n as i32) as usize;
+            let own = if cell < 0 {
+                cell + n as i32
+            } else if cell >= n as i32 {
+                cell - n as i32
+            } else {
+                cell
+            } as usize;
             let next = if own + 1 == n { 0 } else { own + 1 };
             [if own == 0 { n - 1 } else { own - 1 }, own, next]
         };
         let (columns, rows) = (wrapped(cx), wrapped(cy));
-        let mut near = Near { id: 0, first: f32::MAX, second: f32::MAX, offset: [0.0; 2] };
-        for (dy, row) in (-1i8..).zip(rows) {
-            for (dx, column) in (-1i8..).zip(columns) {
-                let id = row * n + column;
-                let ox = u - f32::from(dx) - self.points[id][0];
-                let oy = v - f32::from(dy) - self.points[id][1];
-                let d = ox * ox + oy * oy;
-                if d < near.first {
-                    near = Near { id, first: d, second: near.first, offset: [ox, oy] };
-                } else if d < near.second {
-                    near.second = d;
-                }
-            }
+        // The order of positive floats is that of their bits; the lowest four give way to the number
+        // of the neighbour, so that two integer minima keep track of everything without a branch.
+        let (mut first, mut second) = (u32::MAX, u32::MAX);
+        let offset = |k: u32| {
+            let point = self.points[rows[k as usize / 3] * n + columns[k as usize % 3]];
+            let (dx, dy) = ((k % 3) as f32 - 1.0, (k / 3) as f32 - 1.0);
+            [u - dx - point[0], v - dy - point[1]]
+        };
+        for k in 0..9 {
+            let [ox, oy] = offset(k);
+            let key = (ox * ox + oy * oy).to_bits() & !15 | k;
+            second = second.min(first.max(key));
+            first = first.min(key);
         }
-        near.first = near.first.sqrt() * size;
-        near.second = near.second.sqrt() * size;
-        near.offset = near.offset.map(|o| o * size);
-        near
+        let distance = |key: u32| f32::from_bits(key & !15).sqrt() * size;
+        let k = first & 15;
+        Near {
+            id: rows[k as usize / 3] * n + columns[k as usize % 3],
+            first: distance(first),
+            second: distance(second),
+            offset: offset(k).map(|o| o * size),
+        }
     }
 }
 

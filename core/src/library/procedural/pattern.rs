@@ -2,7 +2,8 @@
 
 use super::Painting;
 use super::canvas::{
-    Canvas, Rgb, SIDE, cos_turns, lit, luma, mix, palette, ramp, shaded_palette, sin_turns, smooth,
+    Canvas, Rgb, SIDE, cos_turns, floor, lit, luma, mix, palette, ramp, shaded_palette, sin_turns,
+    smooth,
 };
 use super::dice::Dice;
 use super::field::Field;
@@ -61,9 +62,9 @@ pub(super) fn stripes(dice: &mut Dice) -> Painting {
             1 => y,
             2 => x + y,
             3 => x - y,
-            _ => y + (x.rem_euclid(zigzag) - zigzag / 2.0).abs(),
+            _ => y + (x % zigzag - zigzag / 2.0).abs(),
         };
-        bands[p.rem_euclid(period as f32) as usize % period]
+        bands[(floor(p) & (period as i32 - 1)) as usize]
     };
     let mut canvas = Canvas::from_fn(|x, y| {
         let (x, y) = (x as f32, y as f32);
@@ -163,10 +164,11 @@ pub(super) fn waves(dice: &mut Dice) -> Painting {
             0 => {
                 let mut t = 0.0;
                 for k in (0..3).rev() {
-                    let row = (py / (size * 0.5)).floor() - k as f32 + 1.0;
-                    let shift = if row.rem_euclid(2.0) < 1.0 { 0.0 } else { 0.5 };
-                    let dx = ((px / size - shift).rem_euclid(1.0) - 0.5) * size;
-                    let dy = py - row * size * 0.5 - size * 0.5;
+                    let row = floor(py / (size * 0.5)) - k + 1;
+                    let shift = if row % 2 == 0 { 0.0 } else { 0.5 };
+                    let along = px / size - shift;
+                    let dx = (along - floor(along) as f32 - 0.5) * size;
+                    let dy = py - row as f32 * size * 0.5 - size * 0.5;
                     let d = (dx * dx + dy * dy).sqrt() / (size * 0.5);
                     if d < 1.0 {
                         t = 0.5 - 0.5 * cos_turns(d * rings);
@@ -176,7 +178,7 @@ pub(super) fn waves(dice: &mut Dice) -> Painting {
                 t
             }
             1 => {
-                let (dx, dy) = (px.rem_euclid(size) - size / 2.0, py.rem_euclid(size) - size / 2.0);
+                let (dx, dy) = (px % size - size / 2.0, py % size - size / 2.0);
                 0.5 + 0.5 * sin_turns((dx * dx + dy * dy).sqrt() / size * rings * 1.5)
             }
             2 => {
@@ -220,7 +222,7 @@ pub(super) fn carpet(dice: &mut Dice) -> Painting {
         let base = if w.abs() < 0.06 { colors[(tone + 2) % 5] } else { colors[tone] };
         if edge < border {
             let band = (edge / border * 5.0) as usize;
-            if band == 2 && (high as usize / 8) % 2 == 0 { base } else { colors[band % 5] }
+            if band == 2 && (high as usize / 8).is_multiple_of(2) { base } else { colors[band % 5] }
         } else {
             base
         }

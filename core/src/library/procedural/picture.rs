@@ -331,7 +331,8 @@ pub(super) fn collage(dice: &mut Dice) -> Painting {
         let kind = dice.below(6);
         let (period, shift) = (dice.range(8.0, 30.0), dice.range(0.0, 400.0));
         let frame = if dice.chance(0.5) { 4.0 } else { 0.0 };
-        let reach = hw + hh;
+        // A card leans by a fifteenth of a turn at most.
+        let reach = 1.1 * hw.max(hh) + 0.4 * hw.min(hh);
         let inside = |dx: f32, dy: f32| {
             let (s, t) = (dx * ux + dy * uy, dy * ux - dx * uy);
             (s, t, (hw - s.abs()).min(hh - t.abs()))
@@ -575,7 +576,7 @@ pub(super) fn heap(dice: &mut Dice) -> Painting {
     let skin = Field::fbm(dice, 24, 4);
     let spread = dice.range(0.0, 0.35);
     let one = dice.chance(0.5);
-    let count = (350_000.0 / (size * size)) as usize + 60;
+    let count = (230_000.0 / (size * size)) as usize + 60;
     for k in 0..count {
         let depth = k as f32 / count as f32;
         let place = dice.place();
@@ -592,7 +593,7 @@ pub(super) fn heap(dice: &mut Dice) -> Painting {
             let z = (1.0 - d2).sqrt();
             let light = (0.62 * z - 0.42 * u - 0.58 * v).max(0.0);
             let gleam = smooth(0.96, 1.0, light) * 0.6;
-            let rough = 1.0 + 0.2 * skin.sample(place[0] + dx, place[1] + dy);
+            let rough = 1.0 + 0.2 * skin.at((place[0] + dx) as i32, (place[1] + dy) as i32);
             (mix(lit(tone, (0.22 + 0.95 * light) * rough), WHITE, gleam), 1.0)
         });
     }
