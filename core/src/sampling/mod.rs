@@ -1,1 +1,169 @@
-//! (document, catalogue, frame) -> scene.
+//! (document, catalogue, frame) -> scene: every number settled.
+//!
+//! Each value is keyed by its name and its slot (`keys`), so that frames need no order, and a
+//! section that is switched off moves no value of another. One file per section of the document.
+//! What the assets look like is not known here: a [`Catalogue`] holds their names.
+
+use crate::base::rng::Draws;
+use crate::document::{Choice, Document, Problem, file::Problems, validate};
+use crate::scene::Scene;
+
+mod background;
+mod body;
+mod camera;
+mod keys;
+mod lights;
+mod look;
+mod outfit;
+mod people;
+mod place;
+mod poisson_disk;
+mod quantile;
+mod value;
+
+pub use value::number;
+
+/// The names of all assets that a document may use, each list in a stable order: it is part of
+/// what a seed means.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Catalogue {
+    /// Local face targets of the figure. Those named `l-...` and `r-...` alike are one shape.
+    pub face_targets: Vec<String>,
+    /// Motion clips.
+    pub clips: Vec<String>,
+    /// Textures for walls, floors and occluders.
+    pub textures: Vec<String>,
+    /// Patterns of cloth.
+    pub cloth_patterns: Vec<String>,
+}
+
+/// Why a frame could not be sampled.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum SampleError {
+    /// The document makes no sense.
+    #[error("{0}")]
+    Document(Problems),
+    /// The document names assets that are not there.
+    #[error("{0}")]
+    Assets(Problems),
+}
+
+/// How many found a place in a frame.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Counts {
+    /// People that the placement asked for.
+    pub people_wanted: u32,
+    /// People that stand in the scene, seen or not.
+    pub people: u32,
+    /// Occluders that the placement asked for.
+    pub occluders_wanted: u32,
+    /// Occluders that stand in the scene.
+    pub occluders: u32,
+}
+
+/// One frame of a document.
+///
+/// # Errors
+/// When the document makes no sense or names assets that the catalogue does not hold.
+pub fn sample(
+    document: &Document,
+    catalogue: &Catalogue,
+    frame: u32,
+) -> Result<Scene, SampleError> {
+    let problems = validate(document);
+    if !problems.is_empty() {
+        return Err(SampleError::Document(Problems(problems)));
+    }
+    let problems = check_assets(document, catalogue);
+    if !problems.is_empty() {
+        return Err(SampleError::Assets(Problems(problems)));
+    }
+    let draws = Draws::new(document.seed, frame);
+    Ok(Scene {
+        frame,
+        seed: document.seed,
+        camera: camera::camera(document, draws),
+        lights: lights::lights(&document.lights, draws),
+        exposure_ev100: camera::exposure_ev100(&document.post, draws),
+        objects: background::objects(document, catalogue, draws),
+        people: people::people(&document.people, catalogue, draws),
+    })
+}
+
+/// How many people and occluders a frame holds. The document must be valid.
+#[must_use]
+pub fn counts(document: &Document, frame: u32) -> Counts {
+    let draws = Draws::new(document.seed, frame);
+    let (people, people_wanted) = if document.people.enabled {
+        let places = place::places(&document.people.placement, &place::PEOPLE, draws);
+        (places.points.len() as u32, places.wanted)
+    } else {
+        (0, 0)
+    };
+    let (occluders, occluders_wanted) = if document.occluders.enabled {
+        let places = place::places(&document.occluders.placement, &place::OCCLUDERS, draws);
+        (places.points.len() as u32, places.wanted)
+    } else {
+        (0, 0)
+    };
+    Counts { people_wanted, people, occluders_wanted, occluders }
+}
+
+/// The ids in a document that a catalogue does not hold, and wishes for `"any"` asset of a kind
+/// of which there is none. What is switched off may name anything.
+#[must_use]
+pub fn check_assets(document: &Document, catalogue: &Catalogue) -> Vec<Problem> {
+    let (wall, floor) = (&document.background.wall, &document.background.floor);
+    let (occluders, people) = (&document.occluders, &document.people);
+    let textures = ("texture", &catalogue.textures, true);
+    let patterns = ("cloth pattern", &catalogue.cloth_patterns, true);
+    let clips = ("clip", &catalogue.clips, false);
+    let (top, bottom) = (&people.wardrobe.top, &people.wardrobe.bottom);
+    let all = [
+        (wall.enabled, "background.wall.texture", &wall.texture, textures),
+        (floor.enabled, "background.floor.texture", &floor.texture, textures),
+        (occluders.enabled, "occluders.texture", &occluders.texture, textures),
+        (people.enabled, "people.wardrobe.top.pattern", &top.pattern, patterns),
+        (people.enabled, "people.wardrobe.bottom.pattern", &bottom.pattern, patterns),
+        (people.enabled, "people.pose.clip", &people.pose.clip, clips),
+    ];
+    let mut problems = Vec::new();
+    for (enabled, path, choice, (kind, known, none_allowed)) in all {
+        if enabled {
+            check_choice(path, choice, kind, known, none_allowed, &mut problems);
+        }
+    }
+    problems
+}
+
+fn check_choice(
+    path: &str,
+    choice: &Choice<String>,
+    kind: &str,
+    known: &[String],
+    none_allowed: bool,
+    problems: &mut Vec<Problem>,
+) {
+    for id in choice.possible() {
+        match id.as_str() {
+            "none" if none_allowed => {}
+            "any" if known.is_empty() => {
+                let advice = if kind == "texture" {
+                    "name a folder of JPEG or PNG files in `assets`, or write \"none\""
+                } else {
+                    "the library holds none"
+                };
+                problems.push(Problem::new(
+                    path,
+                    format!("\"any\" needs at least one {kind}: {advice}"),
+                ));
+            }
+            "any" => {}
+            id if known.iter().any(|k| k == id) => {}
+            id => {
+                let problem = Problem::new(path, format!("there is no {kind} \"{id}\""));
+                problems.push(problem.did_you_mean(id, known.iter().map(String::as_str)));
+            }
+        }
+    }
+}

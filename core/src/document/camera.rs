@@ -1,0 +1,57 @@
+//! The picture's size and the camera that takes it.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::{Param, Rotation, Vector};
+
+/// The picture's size.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+pub struct Image {
+    /// Pixels.
+    pub width: u32,
+    /// Pixels.
+    pub height: u32,
+}
+
+impl Default for Image {
+    fn default() -> Self {
+        Self { width: 640, height: 640 }
+    }
+}
+
+/// The camera. Unrotated it looks down -Z with +Y up.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+pub struct Camera {
+    /// Where false, every parameter takes its median.
+    pub enabled: bool,
+    /// Angle between the rays through the middle of the top and bottom edge.
+    pub fov_vertical_deg: Param,
+    /// Where it stands.
+    pub position_m: Vector,
+    /// Added to the position.
+    pub position_offset_m: Vector,
+    /// Where it looks.
+    pub rotation_deg: Rotation,
+    /// Euler angles added to those of the rotation (or applied before a joint one).
+    pub rotation_offset_deg: [Param; 3],
+    /// Nothing nearer along the view axis is seen.
+    pub near_m: f64,
+}
+
+impl Default for Camera {
+    fn default() -> Self {
+        let five = || Param::uniform(-5.0, 5.0);
+        Self {
+            enabled: true,
+            fov_vertical_deg: Param::uniform(5.0, 50.0),
+            position_m: Vector::constant(0.0, 0.0, 15.0),
+            position_offset_m: Vector::within(5.0),
+            rotation_deg: Rotation::NONE,
+            rotation_offset_deg: [five(), five(), five()],
+            near_m: 0.1,
+        }
+    }
+}

@@ -1,0 +1,321 @@
+//! Randomised numbers as data: how a value is distributed, not what it turns out to be.
+//!
+//! Written short where it can be (`2.5`) and as `{"uniform": [0, 1]}` and the like otherwise. How
+//! they are drawn is `sampling`'s business, which numbers make sense is [`super::validate`]'s.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// A number: fixed, or drawn anew for each frame and slot.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(untagged)]
+pub enum Param {
+    /// Always this.
+    Constant(f64),
+    /// Drawn.
+    Random(Distribution),
+}
+
+/// How a number is distributed.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Distribution {
+    /// Evenly over `[min, max)`.
+    Uniform([f64; 2]),
+    /// Normal, truncated where bounds are given.
+    Normal(Normal),
+    /// The exponential of a normal, truncated where bounds are given.
+    Lognormal(Lognormal),
+    /// Beta, stretched over `[min, max]`.
+    Beta(Beta),
+    /// Triangular.
+    Triangular(Triangular),
+    /// 1 with this probability, else 0.
+    Bernoulli(f64),
+    /// Number of successes in `n` trials.
+    Binomial(Binomial),
+    /// Number of events where this many are expected.
+    Poisson(f64),
+    /// Values with their weights.
+    Choice(Vec<(f64, f64)>),
+    /// Piecewise-linear density through points `[x, density]`; it need not be normalised.
+    Curve(Vec<(f64, f64)>),
+    /// Weights and the parameters they stand for.
+    Mix(Vec<(f64, Param)>),
+}
+
+/// See [`Distribution::Normal`].
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Normal {
+    /// Mean before truncation.
+    pub mean: f64,
+    /// Standard deviation before truncation.
+    pub std: f64,
+    /// Lowest value.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub min: Option<f64>,
+    /// Highest value.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub max: Option<f64>,
+}
+
+/// See [`Distribution::Lognormal`].
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Lognormal {
+    /// Median before truncation; its logarithm is the mean of the logarithm.
+    pub median: f64,
+    /// Standard deviation of the natural logarithm.
+    pub sigma: f64,
+    /// Lowest value.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub min: Option<f64>,
+    /// Highest value.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub max: Option<f64>,
+}
+
+/// See [`Distribution::Beta`].
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Beta {
+    /// First shape parameter.
+    pub alpha: f64,
+    /// Second shape parameter.
+    pub beta: f64,
+    /// Lowest value.
+    #[serde(default)]
+    pub min: f64,
+    /// Highest value.
+    #[serde(default = "one")]
+    pub max: f64,
+}
+
+/// See [`Distribution::Triangular`].
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Triangular {
+    /// Lowest value.
+    pub min: f64,
+    /// Most likely value.
+    pub mode: f64,
+    /// Highest value.
+    pub max: f64,
+}
+
+/// See [`Distribution::Binomial`].
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Binomial {
+    /// Trials.
+    pub n: u32,
+    /// Probability of success.
+    pub p: f64,
+}
+
+/// No 53-bit uniform number lies further out in a normal, in standard deviations.
+const FARTHEST: f64 = 8.3;
+
+fn one() -> f64 {
+    1.0
+}
+
+impl Default for Param {
+    fn default() -> Self {
+        Self::Constant(0.0)
+    }
+}
+
+impl From<f64> for Param {
+    fn from(value: f64) -> Self {
+        Self::Constant(value)
+    }
+}
+
+impl Param {
+    /// Evenly over `[min, max)`.
+    #[must_use]
+    pub const fn uniform(min: f64, max: f64) -> Self {
+        Self::Random(Distribution::Uniform([min, max]))
+    }
+
+    /// Normal, truncated to `[min, max]`.
+    #[must_use]
+    pub const fn normal(mean: f64, std: f64, min: f64, max: f64) -> Self {
+        Self::Random(Distribution::Normal(Normal { mean, std, min: Some(min), max: Some(max) }))
+    }
+
+    /// Weighted parameters.
+    #[must_use]
+    pub fn mix(parts: impl IntoIterator<Item = (f64, Self)>) -> Self {
+        Self::Random(Distribution::Mix(parts.into_iter().collect()))
+    }
+
+    /// An interval that holds every value it can take. Where the law itself has no bounds, they are
+    /// what 53 random bits can reach: 8.3 standard deviations of a normal, and alike for a Poisson.
+    /// Meaningful for parameters that pass validation.
+    #[must_use]
+    pub fn bounds(&self) -> (f64, f64) {
+        let distribution = match self {
+            Self::Constant(value) => return (*value, *value),
+            Self::Random(distribution) => distribution,
+        };
+        match distribution {
+            Distribution::Uniform([min, max]) => (*min, *max),
+            Distribution::Normal(n) => {
+                let reach = FARTHEST * n.std;
+                let (min, max) = (n.mean - reach, n.mean + reach);
+                (n.min.unwrap_or(min).max(min), n.max.unwrap_or(max).min(max))
+            }
+            Distribution::Lognormal(l) => {
+                let factor = libm::exp(FARTHEST * l.sigma);
+                let (min, max) = (l.median / factor, l.median * factor);
+                (l.min.unwrap_or(min).max(min), l.max.unwrap_or(max).min(max))
+            }
+            Distribution::Beta(b) => (b.min, b.max),
+            Distribution::Triangular(t) => (t.min, t.max),
+            Distribution::Bernoulli(p) => (f64::from(*p >= 1.0), f64::from(*p > 0.0)),
+            Distribution::Binomial(b) => (0.0, f64::from(b.n)),
+            Distribution::Poisson(mean) => {
+                (0.0, if *mean > 0.0 { (mean + 9.0 * mean.sqrt() + 30.0).floor() } else { 0.0 })
+            }
+            Distribution::Choice(items) => {
+                hull(items.iter().filter(|i| i.1 > 0.0).map(|i| (i.0, i.0)))
+            }
+            Distribution::Curve(points) => hull(points.iter().map(|p| (p.0, p.0))),
+            Distribution::Mix(parts) => {
+                hull(parts.iter().filter(|p| p.0 > 0.0).map(|p| p.1.bounds()))
+            }
+        }
+    }
+}
+
+fn hull(intervals: impl Iterator<Item = (f64, f64)>) -> (f64, f64) {
+    intervals
+        .reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)))
+        .unwrap_or((f64::NEG_INFINITY, f64::INFINITY))
+}
+
+/// Yes or no: fixed, or drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(untagged)]
+pub enum Flag {
+    /// Always this.
+    Always(bool),
+    /// Drawn.
+    Random(Chance),
+}
+
+/// How a yes or no is drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Chance {
+    /// Yes with this probability.
+    Bernoulli(f64),
+}
+
+impl Flag {
+    /// Yes with a probability.
+    #[must_use]
+    pub const fn with_probability(p: f64) -> Self {
+        Self::Random(Chance::Bernoulli(p))
+    }
+}
+
+/// One of several things: fixed, or drawn by weight.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(untagged)]
+pub enum Choice<T> {
+    /// Always this.
+    Always(T),
+    /// Drawn.
+    Random(Weighted<T>),
+}
+
+/// How one of several things is drawn.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Weighted<T> {
+    /// Things with their weights.
+    Choice(Vec<(T, f64)>),
+}
+
+impl<T> Choice<T> {
+    /// Things with their weights.
+    pub fn of(items: impl IntoIterator<Item = (T, f64)>) -> Self {
+        Self::Random(Weighted::Choice(items.into_iter().collect()))
+    }
+
+    /// Everything that can come up: with a weight above 0.
+    pub fn possible(&self) -> Vec<&T> {
+        match self {
+            Self::Always(item) => vec![item],
+            Self::Random(Weighted::Choice(items)) => {
+                items.iter().filter(|i| i.1 > 0.0).map(|i| &i.0).collect()
+            }
+        }
+    }
+}
+
+/// Worked out from the person's other values, or given.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(untagged)]
+pub enum Auto<T> {
+    /// `"auto"`.
+    Auto(AutoWord),
+    /// As given.
+    Given(T),
+}
+
+/// The word `"auto"`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum AutoWord {
+    /// Worked out from the person's other values.
+    Auto,
+}
+
+impl<T> Default for Auto<T> {
+    fn default() -> Self {
+        Self::Auto(AutoWord::Auto)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_form_reads_and_writes_the_same() {
+        for text in [
+            "2.5",
+            r#"{"uniform":[-7.5,7.5]}"#,
+            r#"{"normal":{"mean":0.0,"std":1.0,"min":-3.0,"max":3.0}}"#,
+            r#"{"normal":{"mean":0.0,"std":1.0}}"#,
+            r#"{"lognormal":{"median":2.0,"sigma":0.5,"max":9.0}}"#,
+            r#"{"beta":{"alpha":2.0,"beta":3.0,"min":0.0,"max":1.0}}"#,
+            r#"{"triangular":{"min":0.0,"mode":1.0,"max":3.0}}"#,
+            r#"{"bernoulli":0.8}"#,
+            r#"{"binomial":{"n":10,"p":0.3}}"#,
+            r#"{"poisson":6.0}"#,
+            r#"{"choice":[[1.0,3.0],[2.0,1.0]]}"#,
+            r#"{"curve":[[0.0,0.0],[1.0,2.0],[4.0,0.0]]}"#,
+            r#"{"mix":[[0.7,1.0],[0.3,{"uniform":[0.0,1.0]}]]}"#,
+        ] {
+            let param: Param = serde_json::from_str(text).unwrap();
+            assert_eq!(serde_json::to_string(&param).unwrap(), text);
+        }
+    }
+
+    #[test]
+    fn bounds_hold_what_can_be_drawn() {
+        let bounds = |text: &str| serde_json::from_str::<Param>(text).unwrap().bounds();
+        assert_eq!(bounds(r#"{"mix":[[1,{"uniform":[3,4]}],[1,-2],[0,99]]}"#), (-2.0, 4.0));
+        assert_eq!(bounds(r#"{"choice":[[5,1],[-1,0],[7,2]]}"#), (5.0, 7.0));
+        assert_eq!(bounds(r#"{"bernoulli":1}"#), (1.0, 1.0));
+        assert_eq!(bounds(r#"{"normal":{"mean":0,"std":1,"min":-1}}"#), (-1.0, 8.3));
+        assert_eq!(bounds(r#"{"poisson":4}"#), (0.0, 52.0));
+        assert_eq!(bounds(r#"{"curve":[[1,1],[2,1]]}"#), (1.0, 2.0));
+    }
+}

@@ -1,0 +1,237 @@
+//! Where things stand: placement, background and occluders.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::{Choice, Color, Param, Rotation, Vector};
+use crate::scene::Shape;
+
+/// How positions, and how many of them, come about.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(tag = "mode", rename_all = "snake_case")]
+pub enum Placement {
+    /// A saturated Poisson-disk pattern in x and y, with depth drawn apart: nothing stands on a
+    /// ground. The number follows from area and separation.
+    PoissonDisk(PoissonDisk),
+    /// At random on a level ground, at a distance from each other.
+    Ground(Ground),
+    /// Side by side along x.
+    Row(Row),
+    /// In rows along x, one behind the other.
+    Grid(Grid),
+}
+
+/// A saturated pattern: no further point fits.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct PoissonDisk {
+    /// From and to.
+    #[serde(default = "seed_side")]
+    pub x_m: [f64; 2],
+    /// From and to.
+    #[serde(default = "seed_side")]
+    pub y_m: [f64; 2],
+    /// z, drawn for each.
+    pub depth_m: Param,
+    /// Least distance between two, measured in x and y.
+    pub separation_m: f64,
+}
+
+fn seed_side() -> [f64; 2] {
+    [-7.5, 7.5]
+}
+
+/// An area on the ground. Who finds no room there is left out.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Ground {
+    /// From and to.
+    pub x_m: [f64; 2],
+    /// From and to.
+    pub z_m: [f64; 2],
+    /// Height of the ground.
+    #[serde(default)]
+    pub y_m: f64,
+    /// How many, rounded to the nearest whole number.
+    pub count: Param,
+    /// Least distance between two.
+    pub separation_m: f64,
+}
+
+/// Side by side along x.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Row {
+    /// How many.
+    pub count: u32,
+    /// From one to the next.
+    pub spacing_m: f64,
+    /// The middle of the row.
+    #[serde(default)]
+    pub center_m: [f64; 3],
+}
+
+/// Rows along x, the first one nearest to +Z.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Grid {
+    /// How many along x.
+    pub columns: u32,
+    /// How many along z.
+    pub rows: u32,
+    /// From one to the next, along x and z.
+    pub spacing_m: [f64; 2],
+    /// The middle of the grid.
+    #[serde(default)]
+    pub center_m: [f64; 3],
+}
+
+/// What surfaces are made of where a texture does not say.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+pub struct Materials {
+    /// Where false, every parameter takes its median.
+    pub enabled: bool,
+    /// Perceptual roughness.
+    pub roughness: Param,
+    /// 0 dielectric .. 1 metal.
+    pub metallic: Param,
+    /// Strength of the texture's normal map, where it has one.
+    pub normal_strength: Param,
+}
+
+impl Default for Materials {
+    fn default() -> Self {
+        Self {
+            enabled: true,
+            roughness: 0.6.into(),
+            metallic: 0.0.into(),
+            normal_strength: 1.0.into(),
+        }
+    }
+}
+
+/// What stands behind and below.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+pub struct Background {
+    /// The wall.
+    pub wall: Wall,
+    /// The ground.
+    pub floor: Floor,
+}
+
+/// A slab that stands upright behind everything.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+pub struct Wall {
+    /// Where false, there is none.
+    pub enabled: bool,
+    /// Its middle.
+    pub position_m: Vector,
+    /// Width, height and thickness.
+    pub size_m: [f64; 3],
+    /// Texture id; `"any"` for one of all, `"none"` for plain.
+    pub texture: Choice<String>,
+    /// Multiplies the texture.
+    pub color: Color,
+    /// Rotation of the hue.
+    pub hue_offset_deg: Param,
+    /// Repeats of the texture, across and down.
+    pub uv_repeat: [f64; 2],
+}
+
+impl Default for Wall {
+    fn default() -> Self {
+        Self {
+            enabled: true,
+            position_m: Vector::constant(0.0, 0.0, -10.0),
+            size_m: [30.0, 30.0, 0.1],
+            texture: Choice::Always("any".to_owned()),
+            color: Color::WHITE,
+            hue_offset_deg: Param::uniform(-180.0, 180.0),
+            uv_repeat: [1.0, 1.0],
+        }
+    }
+}
+
+/// A level slab to stand on. The seed has none.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+pub struct Floor {
+    /// Where false, there is none.
+    pub enabled: bool,
+    /// The middle of its upper face.
+    pub position_m: Vector,
+    /// Along x and z.
+    pub size_m: [f64; 2],
+    /// Texture id; `"any"` for one of all, `"none"` for plain.
+    pub texture: Choice<String>,
+    /// Multiplies the texture.
+    pub color: Color,
+    /// Rotation of the hue.
+    pub hue_offset_deg: Param,
+    /// Repeats of the texture along x and z.
+    pub uv_repeat: [f64; 2],
+}
+
+impl Default for Floor {
+    fn default() -> Self {
+        Self {
+            enabled: false,
+            position_m: Vector::constant(0.0, 0.0, 0.0),
+            size_m: [30.0, 30.0],
+            texture: Choice::Always("any".to_owned()),
+            color: Color::WHITE,
+            hue_offset_deg: 0.0.into(),
+            uv_repeat: [4.0, 4.0],
+        }
+    }
+}
+
+/// Clutter that hides people.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+pub struct Occluders {
+    /// Where false, there are none.
+    pub enabled: bool,
+    /// Where they stand: the middle of their base, about which they are turned.
+    pub placement: Placement,
+    /// Times the base size of the shape: 0.127 m (5 inches), for spheres 0.1524 m (6 inches).
+    pub scale: Param,
+    /// Orientation.
+    pub rotation_deg: Rotation,
+    /// Form.
+    pub shape: Choice<Shape>,
+    /// Texture id; `"any"` for one of all, `"none"` for plain.
+    pub texture: Choice<String>,
+    /// Multiplies the texture.
+    pub color: Color,
+    /// Rotation of the hue.
+    pub hue_offset_deg: Param,
+    /// Repeats of the texture.
+    pub uv_repeat: [f64; 2],
+}
+
+impl Default for Occluders {
+    fn default() -> Self {
+        let turn = || Param::uniform(0.0, 360.0);
+        Self {
+            enabled: true,
+            placement: Placement::PoissonDisk(PoissonDisk {
+                x_m: seed_side(),
+                y_m: seed_side(),
+                depth_m: Param::uniform(-10.0, 14.0),
+                separation_m: 2.5,
+            }),
+            scale: Param::uniform(1.0, 12.0),
+            rotation_deg: Rotation::Euler([turn(), turn(), turn()]),
+            // Ten primitives: four cubes, four cylinders and two spheres.
+            shape: Choice::of([(Shape::Cube, 4.0), (Shape::Cylinder, 4.0), (Shape::Sphere, 2.0)]),
+            texture: Choice::Always("any".to_owned()),
+            color: Color::WHITE,
+            hue_offset_deg: Param::uniform(-180.0, 180.0),
+            uv_repeat: [1.0, 1.0],
+        }
+    }
+}

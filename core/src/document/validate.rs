@@ -1,0 +1,356 @@
+//! Which values of a document make sense: ranges, combinations and what a frame may hold at most.
+//!
+//! Form is [`super::check`]'s business, the rules for single parameters are in [`rules`].
+
+mod rules;
+
+use rules::{Check, Range};
+
+use super::{
+    Ancestry, Auto, Background, Body, Camera, Document, Environment, Image, Labels, Lights, Look,
+    MovingLight, Occluders, Output, Param, People, Placement, PointLight, Pose, Post, Problem,
+    Quality, Scheme, Sun, SunDirection, VERSION, Wardrobe,
+};
+
+/// People in a frame at most.
+pub const MAX_PEOPLE: u32 = 500;
+/// Occluders in a frame at most.
+pub const MAX_OBJECTS: u32 = 10_000;
+const MAX_LIGHTS: usize = 256;
+const MAX_SIDE: u32 = 16_384;
+const MAX_PIXELS: u64 = 64 << 20;
+const MAX_FRAMES: u32 = 100_000_000;
+
+const POSITION: Range = Range::from_to(-1e7, 1e7);
+const ANGLE: Range = Range::from_to(-3600.0, 3600.0);
+const SHARE: Range = Range::from_to(0.0, 1.0);
+const LENGTH: Range = Range::above(0.0, 1e5);
+
+/// Everything in a document that makes no sense, in the order of its fields.
+#[must_use]
+pub fn validate(document: &Document) -> Vec<Problem> {
+    let mut c = Check::default();
+    let d = document;
+    if d.version != VERSION {
+        c.report("version", format!("must be {VERSION}, got {}", d.version));
+    }
+    c.count("frames", d.frames, 1, MAX_FRAMES);
+    for (i, folder) in d.assets.iter().enumerate() {
+        if folder.trim().is_empty() {
+            c.report(&format!("assets[{i}]"), "must name a folder, got an empty text");
+        }
+    }
+    image(&mut c, &d.image);
+    camera(&mut c, &d.camera);
+    lights(&mut c, &d.lights);
+    background(&mut c, &d.background);
+    occluders(&mut c, &d.occluders);
+    people(&mut c, &d.people);
+    c.param("materials.roughness", &d.materials.roughness, Range::from_to(0.04, 1.0));
+    c.param("materials.metallic", &d.materials.metallic, SHARE);
+    c.param("materials.normal_strength", &d.materials.normal_strength, Range::from_to(0.0, 10.0));
+    post(&mut c, &d.post);
+    labels(&mut c, &d.labels);
+    output(&mut c, &d.output);
+    quality(&mut c, &d.quality);
+    c.problems
+}
+
+fn image(c: &mut Check, image: &Image) {
+    c.count("image.width", image.width, 1, MAX_SIDE);
+    c.count("image.height", image.height, 1, MAX_SIDE);
+    let pixels = u64::from(image.width) * u64::from(image.height);
+    if pixels > MAX_PIXELS {
+        let got = format!("{} x {} is {pixels}", image.width, image.height);
+        c.report("image", format!("must have at most {MAX_PIXELS} pixels, {got}"));
+    }
+}
+
+fn camera(c: &mut Check, camera: &Camera) {
+    c.param("camera.fov_vertical_deg", &camera.fov_vertical_deg, Range::from_to(0.1, 179.0));
+    c.vector("camera.position_m", &camera.position_m, POSITION);
+    c.vector("camera.position_offset_m", &camera.position_offset_m, POSITION);
+    c.rotation("camera.rotation_deg", &camera.rotation_deg);
+    c.axes("camera.rotation_offset_deg", &camera.rotation_offset_deg, ANGLE);
+    c.number("camera.near_m", camera.near_m, Range::from_to(1e-4, 1e3));
+}
+
+fn lights(c: &mut Check, lights: &Lights) {
+    sun(c, &lights.sun);
+    if lights.points.len() > MAX_LIGHTS {
+        let got = lights.points.len();
+        c.report("lights.points", format!("must hold at most {MAX_LIGHTS} lamps, got {got}"));
+    }
+    for (i, lamp) in lights.points.iter().enumerate() {
+        let PointLight { enabled: _, on, position_m, intensity_cd, color, range_m, radius_m } =
+            lamp;
+        let path = format!("lights.points[{i}]");
+        c.flag(&format!("{path}.on"), on);
+        c.vector(&format!("{path}.position_m"), position_m, POSITION);
+        c.param(&format!("{path}.intensity_cd"), intensity_cd, Range::from_to(0.0, 1e9));
+        c.color(&format!("{path}.color"), color);
+        reach(c, &path, *range_m, *radius_m);
+    }
+    let moving: &MovingLight = &lights.moving;
+    c.flag("lights.moving.on", &moving.on);
+    c.vector("lights.moving.position_m", &moving.position_m, POSITION);
+    c.vector("lights.moving.position_offset_m", &moving.position_offset_m, POSITION);
+    c.param("lights.moving.intensity_cd", &moving.intensity_cd, Range::from_to(0.0, 1e9));
+    c.color("lights.moving.color", &moving.color);
+    reach(c, "lights.moving", moving.range_m, moving.radius_m);
+    environment(c, &lights.environment);
+}
+
+fn reach(c: &mut Check, path: &str, range_m: f64, radius_m: f64) {
+    c.number(&format!("{path}.range_m"), range_m, Range::above(0.0, 1e6));
+    c.number(&format!("{path}.radius_m"), radius_m, Range::above(0.0, 1e3));
+    if radius_m >= range_m && range_m > 0.0 {
+        let message = format!("must be smaller than range_m ({range_m}), got {radius_m}");
+        c.report(&format!("{path}.radius_m"), message);
+    }
+}
+
+fn sun(c: &mut Check, sun: &Sun) {
+    match &sun.direction {
+        SunDirection::Clock(clock) => {
+            c.param("lights.sun.direction.hour", &clock.hour, Range::from_to(0.0, 24.0));
+            let day = Range::from_to(0.0, 366.0);
+            c.param("lights.sun.direction.day_of_year", &clock.day_of_year, day);
+            let latitude = Range::from_to(-90.0, 90.0);
+            c.param("lights.sun.direction.latitude_deg", &clock.latitude_deg, latitude);
+        }
+        SunDirection::Angles(angles) => {
+            c.param("lights.sun.direction.azimuth_deg", &angles.azimuth_deg, ANGLE);
+            let elevation = Range::from_to(-90.0, 90.0);
+            c.param("lights.sun.direction.elevation_deg", &angles.elevation_deg, elevation);
+        }
+    }
+    c.param("lights.sun.illuminance_lux", &sun.illuminance_lux, Range::from_to(0.0, 1e7));
+    c.color("lights.sun.color", &sun.color);
+}
+
+fn environment(c: &mut Check, environment: &Environment) {
+    let amount = Range::from_to(0.0, 1e7);
+    c.param("lights.environment.sky_lux", &environment.sky_lux, amount);
+    c.color("lights.environment.sky_color", &environment.sky_color);
+    c.param("lights.environment.ground_lux", &environment.ground_lux, amount);
+    c.color("lights.environment.ground_color", &environment.ground_color);
+    c.param("lights.environment.background_nits", &environment.background_nits, amount);
+    c.color("lights.environment.background_color", &environment.background_color);
+}
+
+fn background(c: &mut Check, background: &Background) {
+    let wall = &background.wall;
+    c.vector("background.wall.position_m", &wall.position_m, POSITION);
+    c.numbers("background.wall.size_m", &wall.size_m, LENGTH);
+    c.ids("background.wall.texture", &wall.texture);
+    c.color("background.wall.color", &wall.color);
+    c.param("background.wall.hue_offset_deg", &wall.hue_offset_deg, ANGLE);
+    c.numbers("background.wall.uv_repeat", &wall.uv_repeat, Range::above(0.0, 1e4));
+    let floor = &background.floor;
+    c.vector("background.floor.position_m", &floor.position_m, POSITION);
+    c.numbers("background.floor.size_m", &floor.size_m, LENGTH);
+    c.ids("background.floor.texture", &floor.texture);
+    c.color("background.floor.color", &floor.color);
+    c.param("background.floor.hue_offset_deg", &floor.hue_offset_deg, ANGLE);
+    c.numbers("background.floor.uv_repeat", &floor.uv_repeat, Range::above(0.0, 1e4));
+}
+
+fn occluders(c: &mut Check, occluders: &Occluders) {
+    placement(c, "occluders.placement", &occluders.placement, MAX_OBJECTS);
+    c.param("occluders.scale", &occluders.scale, Range::above(0.0, 1e4));
+    c.rotation("occluders.rotation_deg", &occluders.rotation_deg);
+    c.choice("occluders.shape", &occluders.shape);
+    c.ids("occluders.texture", &occluders.texture);
+    c.color("occluders.color", &occluders.color);
+    c.param("occluders.hue_offset_deg", &occluders.hue_offset_deg, ANGLE);
+    c.numbers("occluders.uv_repeat", &occluders.uv_repeat, Range::above(0.0, 1e4));
+}
+
+/// The most points at a distance `separation` from each other whose discs' centres lie in a
+/// rectangle: hexagonal packing over the rectangle grown by half a separation (Groemer's bound).
+fn most_points(width: f64, height: f64, separation: f64) -> f64 {
+    let (w, h) = (width / separation, height / separation);
+    2.0 / 3f64.sqrt() * w * h + w + h + 1.0
+}
+
+fn placement(c: &mut Check, path: &str, placement: &Placement, limit: u32) {
+    let at = |field: &str| format!("{path}.{field}");
+    match placement {
+        Placement::PoissonDisk(disk) => {
+            let area = c.interval(&at("x_m"), disk.x_m, POSITION)
+                & c.interval(&at("y_m"), disk.y_m, POSITION);
+            c.param(&at("depth_m"), &disk.depth_m, POSITION);
+            if c.number(&at("separation_m"), disk.separation_m, Range::above(0.0, 1e6)) && area {
+                let (w, h) = (disk.x_m[1] - disk.x_m[0], disk.y_m[1] - disk.y_m[0]);
+                let most = most_points(w, h, disk.separation_m);
+                if most > f64::from(limit) {
+                    let what = format!(
+                        "{} lets up to {most:.0} fit into {w} x {h} m, at most {limit} may; make it larger",
+                        disk.separation_m
+                    );
+                    c.report(&at("separation_m"), what);
+                }
+            }
+        }
+        Placement::Ground(ground) => {
+            let area = c.interval(&at("x_m"), ground.x_m, POSITION)
+                & c.interval(&at("z_m"), ground.z_m, POSITION);
+            c.number(&at("y_m"), ground.y_m, POSITION);
+            let count = c.param(&at("count"), &ground.count, Range::from_to(0.0, f64::from(limit)));
+            let separation =
+                c.number(&at("separation_m"), ground.separation_m, Range::from_to(0.0, 1e6));
+            if area && count && separation && ground.separation_m > 0.0 {
+                let (w, d) = (ground.x_m[1] - ground.x_m[0], ground.z_m[1] - ground.z_m[0]);
+                let most = most_points(w, d, ground.separation_m).floor();
+                let least = ground.count.bounds().0;
+                if least > most {
+                    let what = format!(
+                        "is at least {least}, but at separation_m {} only {most} fit into {w} x {d} m",
+                        ground.separation_m
+                    );
+                    c.report(&at("count"), what);
+                }
+            }
+        }
+        Placement::Row(row) => {
+            c.count(&at("count"), row.count, 1, limit);
+            c.number(&at("spacing_m"), row.spacing_m, Range::above(0.0, 1e5));
+            c.numbers(&at("center_m"), &row.center_m, POSITION);
+        }
+        Placement::Grid(grid) => {
+            c.count(&at("columns"), grid.columns, 1, limit);
+            c.count(&at("rows"), grid.rows, 1, limit);
+            let all = u64::from(grid.columns) * u64::from(grid.rows);
+            if all > u64::from(limit) {
+                c.report(path, format!("columns times rows must be at most {limit}, got {all}"));
+            }
+            c.numbers(&at("spacing_m"), &grid.spacing_m, Range::above(0.0, 1e5));
+            c.numbers(&at("center_m"), &grid.center_m, POSITION);
+        }
+    }
+}
+
+fn people(c: &mut Check, people: &People) {
+    placement(c, "people.placement", &people.placement, MAX_PEOPLE);
+    c.param("people.scale", &people.scale, Range::above(0.0, 100.0));
+    c.rotation("people.rotation_deg", &people.rotation_deg);
+    body(c, &people.body);
+    look(c, &people.look);
+    wardrobe(c, &people.wardrobe);
+    let pose: &Pose = &people.pose;
+    c.ids("people.pose.clip", &pose.clip);
+    c.param("people.pose.phase", &pose.phase, SHARE);
+    c.flag("people.pose.mirrored", &pose.mirrored);
+}
+
+fn body(c: &mut Check, body: &Body) {
+    c.param("people.body.age_years", &body.age_years, Range::from_to(1.0, 90.0));
+    c.choice("people.body.sex", &body.sex);
+    if let Auto::Given(stature) = &body.stature_m {
+        c.param("people.body.stature_m", stature, Range::from_to(0.4, 2.6));
+    }
+    let sliders: [(&str, &Param); 5] = [
+        ("people.body.muscle", &body.muscle),
+        ("people.body.weight", &body.weight),
+        ("people.body.proportions", &body.proportions),
+        ("people.body.cup", &body.cup),
+        ("people.body.firmness", &body.firmness),
+    ];
+    for (path, slider) in sliders {
+        c.param(path, slider, SHARE);
+    }
+    match &body.ancestry {
+        Ancestry::Dirichlet(alpha) => {
+            c.numbers("people.body.ancestry.dirichlet", alpha, Range::from_to(0.01, 1e3));
+        }
+        Ancestry::Shares(shares) => {
+            let path = "people.body.ancestry.shares";
+            if c.numbers(path, shares, Range::from_to(0.0, 1e6))
+                && shares.iter().sum::<f64>() <= 0.0
+            {
+                c.report(path, "at least one share must be > 0");
+            }
+        }
+        Ancestry::Choice(items) => {
+            c.weights("people.body.ancestry.choice", items.iter().map(|i| i.1));
+        }
+    }
+}
+
+fn look(c: &mut Check, look: &Look) {
+    let colors = [
+        ("people.look.skin", &look.skin),
+        ("people.look.hair_color", &look.hair_color),
+        ("people.look.iris_color", &look.iris_color),
+    ];
+    for (path, color) in colors {
+        if let Auto::Given(color) = color {
+            c.color(path, color);
+        }
+    }
+    if let Auto::Given(hair) = &look.hair {
+        c.choice("people.look.hair", hair);
+    }
+    c.param("people.look.face_targets", &look.face_targets, Range::from_to(0.0, 100.0));
+    c.number("people.look.face_std", look.face_std, SHARE);
+    c.number("people.look.face_max", look.face_max, SHARE);
+}
+
+fn wardrobe(c: &mut Check, wardrobe: &Wardrobe) {
+    let loose = Range::from_to(0.0, 0.1);
+    let (top, bottom) = (&wardrobe.top, &wardrobe.bottom);
+    c.param("people.wardrobe.top.sleeve", &top.sleeve, SHARE);
+    c.param("people.wardrobe.top.neckline", &top.neckline, SHARE);
+    c.param("people.wardrobe.top.looseness_m", &top.looseness_m, loose);
+    c.color("people.wardrobe.top.color", &top.color);
+    c.ids("people.wardrobe.top.pattern", &top.pattern);
+    c.param("people.wardrobe.top.hue_offset_deg", &top.hue_offset_deg, ANGLE);
+    c.choice("people.wardrobe.bottom.kind", &bottom.kind);
+    c.param("people.wardrobe.bottom.trousers_length", &bottom.trousers_length, SHARE);
+    c.param("people.wardrobe.bottom.shorts_length", &bottom.shorts_length, SHARE);
+    c.param("people.wardrobe.bottom.looseness_m", &bottom.looseness_m, loose);
+    c.color("people.wardrobe.bottom.color", &bottom.color);
+    c.ids("people.wardrobe.bottom.pattern", &bottom.pattern);
+    c.param("people.wardrobe.bottom.hue_offset_deg", &bottom.hue_offset_deg, ANGLE);
+    c.color("people.wardrobe.shoes.color", &wardrobe.shoes.color);
+}
+
+fn post(c: &mut Check, post: &Post) {
+    c.param("post.exposure_ev", &post.exposure_ev, Range::from_to(-20.0, 40.0));
+    c.param("post.compensation_ev", &post.compensation_ev, Range::from_to(-20.0, 20.0));
+}
+
+fn labels(c: &mut Check, labels: &Labels) {
+    if ![1, 4, 16].contains(&labels.samples) {
+        c.report("labels.samples", format!("must be 1, 4 or 16, got {}", labels.samples));
+    }
+    let later = match labels.scheme {
+        Scheme::Visible => return,
+        Scheme::VisibleAndOccluded => "visible_and_occluded",
+        Scheme::All => "all",
+    };
+    c.report("labels.scheme", format!("\"{later}\" is not available yet; use \"visible\""));
+}
+
+fn output(c: &mut Check, output: &Output) {
+    if output.outputs.is_empty() {
+        c.report("output.outputs", "must name at least one output, such as \"rgb\"");
+    }
+    c.count("output.jpeg_quality", u32::from(output.jpeg_quality), 1, 100);
+}
+
+fn quality(c: &mut Check, quality: &Quality) {
+    let size = quality.shadow_map_size;
+    if c.count("quality.shadow_map_size", size, 64, MAX_SIDE) && !size.is_multiple_of(64) {
+        c.report("quality.shadow_map_size", format!("must be a multiple of 64, got {size}"));
+    }
+    c.number("quality.lod_error_px", quality.lod_error_px, Range::from_to(0.0, 100.0));
+    let size = quality.max_texture_size;
+    if c.count("quality.max_texture_size", size, 1, 8192) && !size.is_power_of_two() {
+        c.report("quality.max_texture_size", format!("must be a power of two, got {size}"));
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,183 @@
+use serde_json::{Value, json};
+
+use super::*;
+use crate::document::file;
+
+/// The default document with one value replaced, as text.
+fn with(pointer: &str, value: Value) -> String {
+    let mut document = serde_json::to_value(Document::default()).unwrap();
+    let (parent, name) = pointer.rsplit_once('/').unwrap();
+    let parent = document.pointer_mut(parent).unwrap_or_else(|| panic!("no {pointer}"));
+    match parent {
+        Value::Array(items) => items[name.parse::<usize>().unwrap()] = value,
+        _ => parent[name] = value,
+    }
+    document.to_string()
+}
+
+fn problems_of(text: &str) -> Vec<Problem> {
+    file::parse(text).map_or_else(|e| e.0, |_| Vec::new())
+}
+
+#[test]
+fn the_default_document_makes_sense() {
+    assert_eq!(validate(&Document::default()), []);
+}
+
+#[test]
+fn hostile_values_are_refused_with_their_path() {
+    let ground = |count: Value, separation: f64| json!({"mode": "ground", "x_m": [-2, 2], "z_m": [-2, 2], "count": count, "separation_m": separation});
+    let disk =
+        |separation: f64| json!({"mode": "poisson_disk", "depth_m": 0, "separation_m": separation});
+    let deep = (0..20).fold(json!(1), |inner, _| json!({"mix": [[1, inner]]}));
+    let table = [
+        ("/frames", json!(0), "frames"),
+        ("/assets", json!(["a", " "]), "assets[1]"),
+        ("/image/width", json!(0), "image.width"),
+        ("/image/height", json!(100_000), "image.height"),
+        ("/image", json!({"width": 16384, "height": 16384}), "image"),
+        ("/camera/fov_vertical_deg", json!(0), "camera.fov_vertical_deg"),
+        ("/camera/fov_vertical_deg", json!({"uniform": [5, 180]}), "camera.fov_vertical_deg"),
+        ("/camera/near_m", json!(0), "camera.near_m"),
+        ("/camera/position_m", json!([0, 1e300, 0]), "camera.position_m[1]"),
+        (
+            "/camera/position_offset_m",
+            json!({"sphere": {"radius": -1}}),
+            "camera.position_offset_m.sphere.radius",
+        ),
+        (
+            "/camera/position_offset_m",
+            json!({"box": {"min": [0, 0, 1], "max": [1, 1, 0]}}),
+            "camera.position_offset_m.box.max[2]",
+        ),
+        ("/lights/sun/illuminance_lux", json!(-1), "lights.sun.illuminance_lux"),
+        (
+            "/lights/sun/direction",
+            json!({"mode": "clock", "hour": 25}),
+            "lights.sun.direction.hour",
+        ),
+        ("/lights/points/3/range_m", json!(0), "lights.points[3].range_m"),
+        ("/lights/points/0/radius_m", json!(30), "lights.points[0].radius_m"),
+        ("/lights/points/0/on", json!({"bernoulli": 1.5}), "lights.points[0].on.bernoulli"),
+        ("/lights/moving/color", json!([0, 2, 0]), "lights.moving.color[1]"),
+        (
+            "/lights/environment/sky_lux",
+            json!({"normal": {"mean": 1, "std": 1}}),
+            "lights.environment.sky_lux",
+        ),
+        ("/background/wall/size_m", json!([1, -1, 1]), "background.wall.size_m[1]"),
+        ("/background/wall/texture", json!(""), "background.wall.texture"),
+        ("/background/wall/color", json!({"palette": []}), "background.wall.color.palette"),
+        ("/occluders/placement", disk(0.01), "occluders.placement.separation_m"),
+        ("/occluders/scale", json!({"uniform": [0, 12]}), "occluders.scale"),
+        ("/occluders/shape", json!({"choice": []}), "occluders.shape.choice"),
+        (
+            "/occluders/shape",
+            json!({"choice": [["cube", 0], ["cone", 0]]}),
+            "occluders.shape.choice",
+        ),
+        ("/people/placement", disk(-1.0), "people.placement.separation_m"),
+        ("/people/placement", disk(0.0), "people.placement.separation_m"),
+        ("/people/placement", disk(0.5), "people.placement.separation_m"),
+        ("/people/placement", ground(json!(1e9), 0.1), "people.placement.count"),
+        ("/people/placement", ground(json!(400), 1.0), "people.placement.count"),
+        ("/people/placement", ground(json!({"uniform": [-1, 3]}), 1.0), "people.placement.count"),
+        (
+            "/people/placement",
+            json!({"mode": "row", "count": 1_000_000_000, "spacing_m": 1}),
+            "people.placement.count",
+        ),
+        (
+            "/people/placement",
+            json!({"mode": "grid", "columns": 100, "rows": 100, "spacing_m": [1, 1]}),
+            "people.placement",
+        ),
+        ("/people/placement/x_m", json!([3, -3]), "people.placement.x_m"),
+        ("/people/scale", json!(-2), "people.scale"),
+        ("/people/scale", json!({"uniform": [3, 0.5]}), "people.scale.uniform"),
+        ("/people/scale", json!({"uniform": [1, 1]}), "people.scale.uniform"),
+        (
+            "/people/scale",
+            json!({"triangular": {"min": 1, "mode": 5, "max": 2}}),
+            "people.scale.triangular.mode",
+        ),
+        ("/people/scale", json!({"choice": [[1, -1], [2, 3]]}), "people.scale.choice[0]"),
+        ("/people/scale", json!({"curve": [[1, 0], [2, 0]]}), "people.scale.curve"),
+        ("/people/scale", json!({"curve": [[2, 1], [1, 1]]}), "people.scale.curve[1]"),
+        (
+            "/people/scale",
+            json!({"mix": [[1, {"uniform": [2, 1]}]]}),
+            "people.scale.mix[0][1].uniform",
+        ),
+        ("/people/scale", json!({"normal": {"mean": 1, "std": 0}}), "people.scale.normal.std"),
+        (
+            "/people/scale",
+            json!({"normal": {"mean": 1, "std": 0.1, "min": 2, "max": 3}}),
+            "people.scale.normal",
+        ),
+        ("/people/scale", json!({"lognormal": {"median": 1, "sigma": 1}}), "people.scale"),
+        ("/people/body/age_years", json!(200), "people.body.age_years"),
+        ("/people/body/age_years", json!({"poisson": 30}), "people.body.age_years"),
+        ("/people/body/stature_m", json!(9), "people.body.stature_m"),
+        (
+            "/people/body/muscle",
+            json!({"beta": {"alpha": 0, "beta": 1}}),
+            "people.body.muscle.beta.alpha",
+        ),
+        ("/people/body/weight", json!({"binomial": {"n": 3, "p": 0.5}}), "people.body.weight"),
+        ("/people/body/ancestry", json!({"shares": [0, 0, 0]}), "people.body.ancestry.shares"),
+        (
+            "/people/body/ancestry",
+            json!({"dirichlet": [1, 0, 1]}),
+            "people.body.ancestry.dirichlet[1]",
+        ),
+        ("/people/pose/phase", json!(1.01), "people.pose.phase"),
+        ("/materials/roughness", json!(0), "materials.roughness"),
+        ("/post/exposure_ev", json!(1e9), "post.exposure_ev"),
+        ("/labels/samples", json!(3), "labels.samples"),
+        ("/labels/scheme", json!("all"), "labels.scheme"),
+        ("/output/outputs", json!([]), "output.outputs"),
+        ("/output/jpeg_quality", json!(0), "output.jpeg_quality"),
+        ("/quality/shadow_map_size", json!(100), "quality.shadow_map_size"),
+        ("/quality/max_texture_size", json!(1000), "quality.max_texture_size"),
+    ];
+    for (pointer, value, path) in table {
+        let found = problems_of(&with(pointer, value.clone()));
+        let paths: Vec<&str> = found.iter().map(|p| p.path.as_str()).collect();
+        assert_eq!(paths, [path], "{pointer} = {value}: {found:?}");
+    }
+    let found = problems_of(&with("/people/scale", deep));
+    assert!(found[0].message.contains("nest"), "{found:?}");
+}
+
+#[test]
+fn messages_say_the_rule_and_the_value() {
+    let placement = json!({"mode": "poisson_disk", "depth_m": 0, "separation_m": -1});
+    let found = problems_of(&with("/people/placement", placement));
+    assert_eq!(found[0].to_string(), "people.placement.separation_m: must be > 0, got -1");
+}
+
+#[test]
+fn numbers_that_json_cannot_carry_are_refused_too() {
+    let mut document = Document::default();
+    document.people.scale = Param::Constant(f64::NAN);
+    document.camera.near_m = f64::INFINITY;
+    let paths: Vec<String> = validate(&document).into_iter().map(|p| p.path).collect();
+    assert_eq!(paths, ["camera.near_m", "people.scale"]);
+}
+
+#[test]
+fn reasonable_unbounded_laws_are_accepted() {
+    for (pointer, value) in [
+        ("/lights/sun/illuminance_lux", json!({"normal": {"mean": 10_000, "std": 500}})),
+        ("/lights/sun/illuminance_lux", json!({"lognormal": {"median": 10_000, "sigma": 0.5}})),
+        (
+            "/people/placement",
+            json!({"mode": "ground", "x_m": [-9, 9], "z_m": [-9, 9], "count": {"poisson": 6}, "separation_m": 1}),
+        ),
+        ("/camera/rotation_deg", json!({"rotation": "uniform"})),
+        ("/people/body/sex", json!("female")),
+    ] {
+        assert_eq!(problems_of(&with(pointer, value.clone())), [], "{pointer} = {value}");
+    }
+}

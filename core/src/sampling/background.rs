@@ -1,0 +1,152 @@
+//! Wall, floor and occluders.
+
+use glam::{DQuat, DVec3};
+
+use super::place::{OCCLUDERS, places};
+use super::value::{color, item, number, rotation, vector};
+use super::{Catalogue, keys};
+use crate::base::rng::{Draw, Draws, Key};
+use crate::document::{Choice, Color, Document, Param};
+use crate::scene::{Material, Object, Placement, Role, Shape};
+
+/// Thickness of the floor; its upper face is where the document says.
+const FLOOR_THICKNESS_M: f64 = 0.1;
+/// Sizes of the seed's primitives at scale 1: five inches, spheres six.
+const BASE_SIZE_M: f64 = 0.127;
+const SPHERE_SIZE_M: f64 = 0.1524;
+
+pub(super) fn objects(document: &Document, catalogue: &Catalogue, draws: Draws) -> Vec<Object> {
+    let surfaces = Surfaces { document, catalogue, draws };
+    let mut objects = Vec::new();
+    objects.extend(surfaces.wall());
+    objects.extend(surfaces.floor());
+    surfaces.occluders(&mut objects);
+    objects
+}
+
+struct Surfaces<'a> {
+    document: &'a Document,
+    catalogue: &'a Catalogue,
+    draws: Draws,
+}
+
+/// What a section says of its surface, with the keys of its values.
+struct Finish<'a> {
+    texture: (&'a Choice<String>, Key),
+    color: (&'a Color, Key),
+    hue_offset_deg: (&'a Param, Key),
+    uv_repeat: [f64; 2],
+}
+
+impl Surfaces<'_> {
+    /// `place` keeps the materials of walls, floors and occluders apart.
+    fn material(&self, finish: &Finish, slot: u32, place: u16) -> Material {
+        let of = |key| self.draws.of(key, slot);
+        let rules = &self.document.materials;
+        let rule = |param, key| {
+            number(param, self.draws.random_if(rules.enabled).of(key, slot).lane(place))
+        };
+        Material {
+            texture: asset(finish.texture.0, &self.catalogue.textures, of(finish.texture.1)),
+            base_color: color(finish.color.0, of(finish.color.1)),
+            hue_offset_deg: number(finish.hue_offset_deg.0, of(finish.hue_offset_deg.1)),
+            uv_repeat: finish.uv_repeat,
+            roughness: rule(&rules.roughness, keys::MATERIAL_ROUGHNESS),
+            metallic: rule(&rules.metallic, keys::MATERIAL_METALLIC),
+            normal_strength: rule(&rules.normal_strength, keys::MATERIAL_NORMAL),
+        }
+    }
+
+    fn wall(&self) -> Option<Object> {
+        let wall = &self.document.background.wall;
+        let finish = Finish {
+            texture: (&wall.texture, keys::WALL_TEXTURE),
+            color: (&wall.color, keys::WALL_COLOR),
+            hue_offset_deg: (&wall.hue_offset_deg, keys::WALL_HUE),
+            uv_repeat: wall.uv_repeat,
+        };
+        wall.enabled.then(|| Object {
+            role: Role::Wall,
+            shape: Shape::Cube,
+            placement: Placement {
+                position_m: vector(&wall.position_m, self.draws.of(keys::WALL_POSITION, 0)),
+                rotation: DQuat::IDENTITY,
+                scale: DVec3::from_array(wall.size_m),
+            },
+            material: self.material(&finish, 0, 1),
+        })
+    }
+
+    fn floor(&self) -> Option<Object> {
+        let floor = &self.document.background.floor;
+        let finish = Finish {
+            texture: (&floor.texture, keys::FLOOR_TEXTURE),
+            color: (&floor.color, keys::FLOOR_COLOR),
+            hue_offset_deg: (&floor.hue_offset_deg, keys::FLOOR_HUE),
+            uv_repeat: floor.uv_repeat,
+        };
+        let top = vector(&floor.position_m, self.draws.of(keys::FLOOR_POSITION, 0));
+        floor.enabled.then(|| Object {
+            role: Role::Floor,
+            shape: Shape::Cube,
+            placement: Placement {
+                position_m: top - DVec3::new(0.0, 0.5 * FLOOR_THICKNESS_M, 0.0),
+                rotation: DQuat::IDENTITY,
+                scale: DVec3::new(floor.size_m[0], FLOOR_THICKNESS_M, floor.size_m[1]),
+            },
+            material: self.material(&finish, 0, 2),
+        })
+    }
+
+    fn occluders(&self, objects: &mut Vec<Object>) {
+        let occluders = &self.document.occluders;
+        if !occluders.enabled {
+            return;
+        }
+        let finish = Finish {
+            texture: (&occluders.texture, keys::OCCLUDER_TEXTURE),
+            color: (&occluders.color, keys::OCCLUDER_COLOR),
+            hue_offset_deg: (&occluders.hue_offset_deg, keys::OCCLUDER_HUE),
+            uv_repeat: occluders.uv_repeat,
+        };
+        for (slot, base) in places(&occluders.placement, &OCCLUDERS, self.draws).points {
+            let of = |key| self.draws.of(key, slot);
+            let shape = *item(&occluders.shape, of(keys::OCCLUDER_SHAPE));
+            let unit = if shape == Shape::Sphere { SPHERE_SIZE_M } else { BASE_SIZE_M };
+            let size = unit * number(&occluders.scale, of(keys::OCCLUDER_SCALE));
+            let turn = rotation(&occluders.rotation_deg, DVec3::ZERO, of(keys::OCCLUDER_ROTATION));
+            // Turned about the middle of the base.
+            let middle = base + turn * DVec3::new(0.0, half_height(shape) * size, 0.0);
+            objects.push(Object {
+                role: Role::Occluder,
+                shape,
+                placement: Placement {
+                    position_m: middle,
+                    rotation: turn,
+                    scale: DVec3::splat(size),
+                },
+                material: self.material(&finish, slot, 0),
+            });
+        }
+    }
+}
+
+/// Of a primitive in its model space.
+fn half_height(shape: Shape) -> f64 {
+    match shape {
+        Shape::Torus => 0.15,
+        Shape::Cube | Shape::Cylinder | Shape::Sphere | Shape::Capsule | Shape::Cone => 0.5,
+    }
+}
+
+/// The asset that a choice of ids falls on, if any. The catalogue holds what the choice names.
+pub(super) fn asset(choice: &Choice<String>, known: &[String], draw: Draw) -> Option<String> {
+    match item(choice, draw).as_str() {
+        "none" => None,
+        "any" => {
+            let index = (draw.lane(1).uniform() * known.len() as f64) as usize;
+            known.get(index).cloned()
+        }
+        id => Some(id.to_owned()),
+    }
+}

@@ -1,0 +1,264 @@
+//! Skin, hair, eyes and faces. Where the document says `"auto"` they follow ancestry, age and sex.
+
+use super::body::interpolate;
+use super::keys;
+use super::people::PersonTraits;
+use super::quantile;
+use super::value::{color, item, linear, number};
+use crate::base::rng::{Draw, Draws, Stream};
+use crate::document::{self, Auto};
+use crate::scene::{HairStyle, Look, Sex};
+
+/// Skin from light to dark, sRGB. Ancestry sets the place on this row.
+const SKIN_SRGB: [[f64; 3]; 6] = [
+    [0.93, 0.77, 0.68],
+    [0.87, 0.69, 0.58],
+    [0.80, 0.62, 0.50],
+    [0.68, 0.48, 0.36],
+    [0.50, 0.34, 0.25],
+    [0.36, 0.23, 0.17],
+];
+/// The middle of each ancestry on that row.
+const SKIN_PLACE: [f64; 3] = [4.5, 1.6, 0.7];
+const SKIN_PLACE_STD: f64 = 0.4;
+
+/// Hair of mostly European people: black, dark brown, brown, fair, red; sRGB with weights.
+const HAIR_EUROPEAN: [([f64; 3], f64); 5] = [
+    ([0.06, 0.05, 0.05], 0.12),
+    ([0.14, 0.09, 0.06], 0.32),
+    ([0.26, 0.16, 0.09], 0.32),
+    ([0.52, 0.38, 0.20], 0.18),
+    ([0.40, 0.17, 0.07], 0.06),
+];
+/// Everybody else's.
+const HAIR_OTHERS: [([f64; 3], f64); 2] = [([0.05, 0.04, 0.04], 0.7), ([0.12, 0.08, 0.05], 0.3)];
+const HAIR_GREY: [f64; 3] = [0.62, 0.61, 0.59];
+/// Age at which hair begins to turn grey, and how long it takes.
+const GREYING_YEARS: (f64, f64, f64) = (46.0, 8.0, 22.0);
+
+/// Irises of mostly European people: brown, hazel, green, blue, grey; sRGB with weights.
+const IRIS_EUROPEAN: [([f64; 3], f64); 5] = [
+    ([0.30, 0.18, 0.09], 0.40),
+    ([0.42, 0.31, 0.15], 0.15),
+    ([0.34, 0.42, 0.25], 0.10),
+    ([0.32, 0.47, 0.62], 0.28),
+    ([0.45, 0.50, 0.53], 0.07),
+];
+/// Everybody else's.
+const IRIS_OTHERS: [([f64; 3], f64); 2] = [([0.18, 0.10, 0.06], 0.6), ([0.28, 0.17, 0.09], 0.4)];
+
+/// These face targets change so much that they get a smaller standard deviation.
+const STRONG: [&str; 8] = [
+    "pointed",
+    "triangle",
+    "head-age",
+    "trans-",
+    "nubian",
+    "scale-vert",
+    "invertedtriangular",
+    "asym",
+];
+const STRONG_STD: f64 = 0.12;
+
+/// Face targets that are one shape: a single one, or those of the left and the right side.
+pub(super) type FaceShape<'a> = Vec<&'a str>;
+
+pub(super) fn face_shapes(targets: &[String]) -> Vec<FaceShape<'_>> {
+    let partner = |name: &str, from: &str, to: &str| {
+        let (folder, file) = name.rsplit_once('/').map_or(("", name), |(f, n)| (f, n));
+        let stem = file.strip_prefix(from)?;
+        let other =
+            if folder.is_empty() { format!("{to}{stem}") } else { format!("{folder}/{to}{stem}") };
+        targets.iter().find(|t| **t == other)
+    };
+    let mut shapes = Vec::new();
+    for name in targets {
+        if partner(name, "r-", "l-").is_some() {
+            continue;
+        }
+        let right = partner(name, "l-", "r-");
+        shapes.push([Some(name), right].into_iter().flatten().map(String::as_str).collect());
+    }
+    shapes
+}
+
+pub(super) fn look(
+    look: &document::Look,
+    faces: &[FaceShape],
+    traits: PersonTraits,
+    draws: Draws,
+    slot: u32,
+) -> Look {
+    let of = |key| draws.random_if(look.enabled).of(key, slot);
+    let given = |auto: &Auto<document::Color>, key, otherwise: &dyn Fn(Draw) -> [f64; 3]| match auto
+    {
+        Auto::Auto(_) => otherwise(of(key)),
+        Auto::Given(law) => color(law, of(key)),
+    };
+    let greying = of(keys::GREYING);
+    Look {
+        skin_color: given(&look.skin, keys::SKIN, &|draw| skin(traits, draw)),
+        hair: match &look.hair {
+            Auto::Auto(_) => hair_style(traits, of(keys::HAIR)),
+            Auto::Given(choice) => *item(choice, of(keys::HAIR)),
+        },
+        hair_color: given(&look.hair_color, keys::HAIR_COLOR, &|draw| {
+            hair_color(traits, draw, greying)
+        }),
+        iris_color: given(&look.iris_color, keys::IRIS, &|draw| iris(traits, draw)),
+        face: if look.enabled { face(look, faces, draws, slot) } else { Vec::new() },
+    }
+}
+
+/// A colour on the row of skins, a little lighter or darker than it.
+fn skin(traits: PersonTraits, draw: Draw) -> [f64; 3] {
+    let middle: f64 =
+        traits.ancestry.iter().zip(SKIN_PLACE).map(|(share, place)| share * place).sum();
+    let last = SKIN_SRGB.len() - 1;
+    let place = middle + SKIN_PLACE_STD * quantile::normal(draw.uniform());
+    let place = place.clamp(0.0, last as f64);
+    let (i, t) = (place as usize, place.fract());
+    let next = SKIN_SRGB[(i + 1).min(last)];
+    let lighter = 1.0 + 0.02 * quantile::normal(draw.lane(1).uniform()).clamp(-2.5, 2.5);
+    let channel = |c: usize| (SKIN_SRGB[i][c] + t * (next[c] - SKIN_SRGB[i][c])) * lighter;
+    linear([channel(0), channel(1), channel(2)].map(|v| v.clamp(0.02, 0.98)))
+}
+
+/// Whether a trait of mostly European people shows: rarely where the share is small.
+fn european(traits: PersonTraits, draw: Draw) -> bool {
+    let share = traits.ancestry[2];
+    draw.lane(1).uniform() < share * share
+}
+
+fn pick(colors: &[([f64; 3], f64)], draw: Draw) -> [f64; 3] {
+    let chosen = colors[quantile::index(draw.uniform(), colors.iter().map(|c| c.1))].0;
+    let lighter = 0.85 + 0.3 * draw.lane(2).uniform();
+    chosen.map(|v| (v * lighter).min(1.0))
+}
+
+fn hair_color(traits: PersonTraits, draw: Draw, greying: Draw) -> [f64; 3] {
+    let young =
+        if european(traits, draw) { pick(&HAIR_EUROPEAN, draw) } else { pick(&HAIR_OTHERS, draw) };
+    let (mean, std, years) = GREYING_YEARS;
+    let begins = mean + std * quantile::normal(greying.uniform());
+    let grey = ((traits.age_years - begins) / years).clamp(0.0, 1.0);
+    linear([0, 1, 2].map(|i| young[i] + grey * (HAIR_GREY[i] - young[i])))
+}
+
+fn iris(traits: PersonTraits, draw: Draw) -> [f64; 3] {
+    let colors: &[_] = if european(traits, draw) { &IRIS_EUROPEAN } else { &IRIS_OTHERS };
+    linear(pick(colors, draw))
+}
+
+fn hair_style(traits: PersonTraits, draw: Draw) -> HairStyle {
+    let PersonTraits { sex, age_years, ancestry } = traits;
+    let curly = if ancestry[0] > 0.5 { 0.35 } else { 0.0 };
+    // Bald, cropped, short, afro, long.
+    let weights = match sex {
+        _ if age_years < 3.0 => [0.0, 0.5, 0.5, 0.0, 0.0],
+        Sex::Male => {
+            let bald = interpolate(&[(20.0, 0.02), (40.0, 0.12), (70.0, 0.35)], age_years);
+            let bald = if age_years < 18.0 { 0.0 } else { bald };
+            [bald, 0.25, 0.6 - 0.5 * curly, curly, 0.04]
+        }
+        Sex::Female => [0.0, 0.05, 0.3, curly, 0.7 - 0.5 * curly],
+    };
+    let styles =
+        [HairStyle::Bald, HairStyle::Cropped, HairStyle::Short, HairStyle::Afro, HairStyle::Long];
+    styles[quantile::index(draw.uniform(), weights.into_iter())]
+}
+
+/// Some shapes, each with the absolute value of a normal.
+fn face(
+    look: &document::Look,
+    shapes: &[FaceShape],
+    draws: Draws,
+    slot: u32,
+) -> Vec<(String, f64)> {
+    let wanted = number(&look.face_targets, draws.of(keys::FACE_COUNT, slot)).round() as usize;
+    let mut order: Stream = draws.of(keys::FACE_ORDER, slot).stream();
+    let mut rest: Vec<usize> = (0..shapes.len()).collect();
+    let mut face = Vec::new();
+    for _ in 0..wanted.min(shapes.len()) {
+        let shape = rest.swap_remove(order.below(rest.len()));
+        // By the shape's own number: which others were chosen changes nothing.
+        let u = draws.of(keys::FACE_AMOUNT, slot).lane(shape as u16).uniform();
+        let strong = shapes[shape].iter().any(|name| STRONG.iter().any(|s| name.contains(s)));
+        let std = if strong { look.face_std.min(STRONG_STD) } else { look.face_std };
+        let amount = (std * quantile::normal(u)).abs().min(look.face_max);
+        face.extend(shapes[shape].iter().map(|name| ((*name).to_owned(), amount)));
+    }
+    face.sort_by(|a, b| a.0.cmp(&b.0));
+    face
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::base::rng::Key;
+
+    fn traits(sex: Sex, age_years: f64, ancestry: [f64; 3]) -> PersonTraits {
+        PersonTraits { sex, age_years, ancestry }
+    }
+
+    fn draws() -> impl Iterator<Item = Draw> {
+        (0..5000).map(|i| Draws::new(8, i).of(Key::new("test"), 0))
+    }
+
+    fn mean(values: impl Iterator<Item = f64>) -> f64 {
+        values.sum::<f64>() / 5000.0
+    }
+
+    #[test]
+    fn skin_darkens_along_the_row() {
+        let of = |ancestry| mean(draws().map(|d| skin(traits(Sex::Male, 30.0, ancestry), d)[1]));
+        let (african, asian, european) =
+            (of([1.0, 0.0, 0.0]), of([0.0, 1.0, 0.0]), of([0.0, 0.0, 1.0]));
+        assert!(african < 0.5 * asian && asian < european, "{african} {asian} {european}");
+        for d in draws() {
+            let [r, g, b] = skin(traits(Sex::Male, 30.0, [0.3, 0.3, 0.4]), d);
+            assert!(0.0 < b && b < g && g < r && r < 1.0, "{r} {g} {b}");
+        }
+    }
+
+    #[test]
+    fn hair_turns_grey_with_age() {
+        let of =
+            |age| {
+                mean(draws().map(|d| {
+                    hair_color(traits(Sex::Female, age, [0.0, 1.0, 0.0]), d, d.lane(9))[0]
+                }))
+            };
+        assert!(of(20.0) < 0.02 && of(55.0) > 2.0 * of(20.0) && of(85.0) > 0.3);
+    }
+
+    #[test]
+    fn hair_styles_follow_sex_and_age() {
+        let share =
+            |t: PersonTraits, style| mean(draws().map(|d| f64::from(hair_style(t, d) == style)));
+        let anyone = [0.3, 0.3, 0.4];
+        assert!(share(traits(Sex::Female, 30.0, anyone), HairStyle::Long) > 0.5);
+        assert!(share(traits(Sex::Male, 30.0, anyone), HairStyle::Long) < 0.1);
+        assert_eq!(share(traits(Sex::Male, 12.0, anyone), HairStyle::Bald), 0.0);
+        assert!(share(traits(Sex::Male, 70.0, anyone), HairStyle::Bald) > 0.2);
+        assert!(share(traits(Sex::Male, 30.0, [0.9, 0.1, 0.0]), HairStyle::Afro) > 0.2);
+    }
+
+    #[test]
+    fn left_and_right_get_the_same_amount() {
+        let names =
+            ["ears/l-ear-up", "ears/r-ear-up", "head-oval", "l-eye-big", "r-eye-big", "r-alone"];
+        let names = names.map(str::to_owned).to_vec();
+        let shapes = face_shapes(&names);
+        assert_eq!(shapes.len(), 4);
+        let law = document::Look { face_targets: 3.0.into(), ..document::Look::default() };
+        for frame in 0..50 {
+            let face = face(&law, &shapes, Draws::new(1, frame), 0);
+            let of = |name: &str| face.iter().find(|f| f.0 == name).map(|f| f.1);
+            assert_eq!(of("ears/l-ear-up"), of("ears/r-ear-up"));
+            assert_eq!(of("l-eye-big"), of("r-eye-big"));
+            assert!((3..=5).contains(&face.len()));
+            assert!(face.iter().all(|f| (0.0..=0.8).contains(&f.1)));
+        }
+    }
+}

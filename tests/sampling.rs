@@ -1,0 +1,301 @@
+//! Document to scene: what seeds, frames and switches mean across all sections.
+
+use figurant_core::document::{Choice, Document, Param, Problem, file, presets};
+use figurant_core::sampling::{Catalogue, Counts, SampleError, check_assets, counts, sample};
+use figurant_core::scene::{Role, Scene, Sex};
+use serde_json::Value;
+
+fn catalogue() -> Catalogue {
+    let names = |kind: &str, n: usize| (0..n).map(|i| format!("{kind}_{i}")).collect();
+    let clips = [
+        "walk",
+        "run",
+        "jump",
+        "kick",
+        "punch",
+        "spinkick",
+        "spin",
+        "backflip",
+        "cartwheel",
+        "roll",
+    ]
+    .into_iter()
+    .chain(["dance_a", "dance_b", "crawl", "getup_facedown", "getup_faceup"]);
+    Catalogue {
+        face_targets: names("nose-scale", 60),
+        clips: clips.map(str::to_owned).collect(),
+        textures: names("texture", 40),
+        cloth_patterns: names("pattern", 5),
+    }
+}
+
+fn preset(name: &str) -> Document {
+    file::parse(presets::find(name).unwrap().text).unwrap()
+}
+
+fn scene(document: &Document, frame: u32) -> Scene {
+    sample(document, &catalogue(), frame).unwrap()
+}
+
+fn mean_and_spread(values: &[f64]) -> (f64, f64) {
+    let n = values.len() as f64;
+    let mean = values.iter().sum::<f64>() / n;
+    (mean, (values.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / (n - 1.0)).sqrt())
+}
+
+#[test]
+fn the_seeds_preset_places_as_many_as_the_seed() {
+    let document = preset("peoplesanspeople");
+    let all: Vec<Counts> = (0..1000).map(|frame| counts(&document, frame)).collect();
+    let people: Vec<f64> = all.iter().map(|c| f64::from(c.people)).collect();
+    let (mean, spread) = mean_and_spread(&people);
+    assert!((mean - 16.8).abs() < 0.3, "people: mean {mean}");
+    assert!((spread - 1.5).abs() < 0.3, "people: spread {spread}");
+    let occluders: Vec<f64> = all.iter().map(|c| f64::from(c.occluders)).collect();
+    let (mean, spread) = mean_and_spread(&occluders);
+    assert!((mean - 24.1).abs() < 0.3, "occluders: mean {mean}");
+    assert!((spread - 1.7).abs() < 0.3, "occluders: spread {spread}");
+    for frame in [0, 17, 999] {
+        let scene = scene(&document, frame);
+        let occluders = scene.objects.iter().filter(|o| o.role == Role::Occluder).count();
+        let counts = &all[frame as usize];
+        assert_eq!(
+            (scene.people.len(), occluders),
+            (counts.people as usize, counts.occluders as usize)
+        );
+    }
+}
+
+#[test]
+fn the_seeds_ranges_are_kept_and_filled() {
+    let document = preset("peoplesanspeople");
+    let mut seen: Vec<(&str, f64, f64, Vec<f64>)> = vec![
+        ("fov", 5.0, 50.0, vec![]),
+        ("camera x", -5.0, 5.0, vec![]),
+        ("camera z", 10.0, 20.0, vec![]),
+        ("exposure", 2.0, 7.0, vec![]),
+        ("lamp", 5_000.0, 50_000.0, vec![]),
+        ("person scale", 0.5, 3.0, vec![]),
+        ("person z", -9.0, 6.0, vec![]),
+        ("person x", -7.5, 7.5, vec![]),
+        ("occluder size", 0.127, 1.8288, vec![]),
+        ("occluder hue", -180.0, 180.0, vec![]),
+        ("phase", 0.0, 1.0, vec![]),
+    ];
+    let mut lamps = 0;
+    for frame in 0..300 {
+        let s = scene(&document, frame);
+        let mut add = |i: usize, v: f64| seen[i].3.push(v);
+        add(0, s.camera.fov_vertical_deg);
+        add(1, s.camera.position_m.x);
+        add(2, s.camera.position_m.z);
+        add(3, s.exposure_ev100);
+        lamps += s.lights.points.len();
+        s.lights.points.iter().for_each(|p| add(4, p.intensity_cd));
+        for p in &s.people {
+            add(5, p.placement.scale.x);
+            add(6, p.placement.position_m.z);
+            add(7, p.placement.position_m.x);
+            add(10, p.pose.phase);
+        }
+        for o in s.objects.iter().filter(|o| o.role == Role::Occluder) {
+            add(8, o.placement.scale.x);
+            add(9, o.material.hue_offset_deg);
+        }
+        assert_eq!(s.lights.sun.unwrap().illuminance_lux, 10_000.0);
+    }
+    for (name, min, max, values) in seen {
+        let (low, high) =
+            values.iter().fold((f64::MAX, f64::MIN), |(a, b), v| (a.min(*v), b.max(*v)));
+        let edge = 0.03 * (max - min);
+        assert!(low >= min && low < min + edge, "{name}: lowest {low}, expected {min}");
+        assert!(high <= max && high > max - edge, "{name}: highest {high}, expected {max}");
+    }
+    // Seven lamps, each on with probability 0.8: 5.6 a frame, standard error 0.06.
+    let mean = lamps as f64 / 300.0;
+    assert!((mean - 5.6).abs() < 0.25, "{mean} lamps a frame");
+}
+
+#[test]
+fn frames_need_no_order() {
+    for preset_ in presets::ALL {
+        let document = preset(preset_.name);
+        let forward: Vec<Scene> = (0..20).map(|f| scene(&document, f)).collect();
+        for f in [19, 3, 11, 0, 7] {
+            assert_eq!(scene(&document, f), forward[f as usize], "{} frame {f}", preset_.name);
+        }
+        assert_ne!(forward[0].people, forward[1].people);
+        let other = Document { seed: document.seed + 1, ..document };
+        assert_ne!(scene(&other, 0).people, forward[0].people);
+    }
+}
+
+/// Removes what a path with `*` for every item leads to; `objects[wall]` stands for its role.
+fn blot(value: &mut Value, path: &[&str]) {
+    let (Some(name), rest) = (path.first(), &path[1..]) else { return };
+    match value {
+        Value::Object(map) if rest.is_empty() => {
+            map.remove(*name);
+        }
+        Value::Object(map) => {
+            if let Some(inner) = map.get_mut(*name) {
+                blot(inner, rest);
+            }
+        }
+        Value::Array(items) if *name == "*" => items.iter_mut().for_each(|item| blot(item, rest)),
+        Value::Array(items) => items.retain(|item| item["role"] != *name),
+        _ => {}
+    }
+}
+
+#[test]
+fn a_switch_changes_nothing_else() {
+    type Switch = (fn(&mut Document), &'static [&'static str]);
+    let switches: [Switch; 14] = [
+        (|d| d.camera.enabled = false, &["camera"]),
+        (|d| d.lights.sun.enabled = false, &["lights/sun"]),
+        (|d| d.lights.moving.enabled = false, &["lights/points"]),
+        (|d| d.lights.environment.enabled = false, &["lights/environment"]),
+        (|d| d.background.wall.enabled = false, &["objects/wall"]),
+        (|d| d.background.floor.enabled = true, &["objects/floor"]),
+        (|d| d.occluders.enabled = false, &["objects/occluder"]),
+        (|d| d.people.enabled = false, &["people"]),
+        // Automatic looks follow the body; the shape of the face does not.
+        (
+            |d| d.people.body.enabled = false,
+            &[
+                "people/*/body",
+                "people/*/look/skin_color",
+                "people/*/look/hair_color",
+                "people/*/look/iris_color",
+                "people/*/look/hair",
+            ],
+        ),
+        (|d| d.people.look.enabled = false, &["people/*/look"]),
+        (|d| d.people.wardrobe.enabled = false, &["people/*/outfit"]),
+        (|d| d.people.pose.enabled = false, &["people/*/pose"]),
+        (|d| d.post.enabled = false, &["exposure_ev100"]),
+        (|d| d.materials.roughness = Param::uniform(0.1, 0.9), &["objects/*/material/roughness"]),
+    ];
+    let base = preset("peoplesanspeople");
+    for (switch, paths) in switches {
+        let mut switched = base.clone();
+        switch(&mut switched);
+        let mut differ = false;
+        for frame in 0..5 {
+            let [mut a, mut b] =
+                [&base, &switched].map(|d| serde_json::to_value(scene(d, frame)).unwrap());
+            differ |= a != b;
+            for path in paths {
+                let path: Vec<&str> = path.split('/').collect();
+                blot(&mut a, &path);
+                blot(&mut b, &path);
+            }
+            assert!(a == b, "{paths:?}, frame {frame}: something else has changed");
+        }
+        assert!(differ, "{paths:?}: the switch does nothing");
+    }
+}
+
+#[test]
+fn a_scene_survives_its_file() {
+    for preset_ in presets::ALL {
+        let scene = scene(&preset(preset_.name), 3);
+        let text = serde_json::to_string(&scene).unwrap();
+        assert_eq!(serde_json::from_str::<Scene>(&text).unwrap(), scene);
+    }
+}
+
+#[test]
+fn scenes_hold_only_what_makes_sense() {
+    for preset_ in presets::ALL {
+        let document = preset(preset_.name);
+        for frame in 0..200 {
+            let s = scene(&document, frame);
+            assert!((0.1..179.0).contains(&s.camera.fov_vertical_deg));
+            assert!(
+                s.lights.sun.is_none_or(|sun| (sun.direction_to_sun.length() - 1.0).abs() < 1e-9)
+            );
+            for (slot, p) in s.people.iter().enumerate() {
+                assert_eq!(p.slot, slot as u32);
+                let (body, look, outfit) = (&p.body, &p.look, &p.outfit);
+                assert!((0.6..2.1).contains(&body.stature_m), "{body:?}");
+                assert!((body.ancestry.iter().sum::<f64>() - 1.0).abs() < 1e-9);
+                let colors = [look.skin_color, look.hair_color, look.iris_color];
+                let cloth = [outfit.top.color, outfit.bottom.color, outfit.shoes.color];
+                for channel in colors.into_iter().chain(cloth).flatten() {
+                    assert!((0.0..=1.0).contains(&channel));
+                }
+                assert!((p.placement.rotation.length() - 1.0).abs() < 1e-9);
+                assert!(catalogue().clips.contains(&p.pose.clip));
+            }
+        }
+    }
+}
+
+#[test]
+fn the_starter_shows_six_people_of_readable_size() {
+    let document = preset("starter");
+    for frame in 0..200 {
+        let s = scene(&document, frame);
+        assert_eq!(s.people.len(), 6, "frame {frame}");
+        for p in &s.people {
+            let height_px = |y: f64| {
+                let point = p.placement.position_m + glam::DVec3::new(0.0, y, 0.0);
+                s.camera.project(s.camera.view_from_world(point)).unwrap()
+            };
+            let (feet, crown) = (height_px(0.0), height_px(1.7));
+            let share = (feet.y - crown.y) / f64::from(s.camera.height);
+            assert!((0.36..0.8).contains(&share), "frame {frame}: {share} of the height");
+            assert!(crown.y > 0.0 && feet.y < 640.0, "frame {frame}: {feet} {crown}");
+            assert!((-20.0..660.0).contains(&feet.x), "frame {frame}: {feet}");
+        }
+    }
+}
+
+#[test]
+fn the_lineup_fits_into_its_picture() {
+    let document = preset("lineup");
+    let s = scene(&document, 0);
+    assert_eq!(s.people.len(), 14);
+    for p in &s.people {
+        let at = |x: f64, y: f64| {
+            let point = p.placement.position_m + glam::DVec3::new(x, y, 0.0);
+            s.camera.project(s.camera.view_from_world(point)).unwrap()
+        };
+        let (low, high) = (at(-0.45, -0.05), at(0.45, 2.1));
+        assert!(low.x > 0.0 && high.x < 1920.0 && high.y > 0.0 && low.y < 640.0, "{low} {high}");
+    }
+    let women = s.people.iter().filter(|p| p.body.sex == Sex::Female).count();
+    assert!((3..=11).contains(&women), "{women} women");
+}
+
+#[test]
+fn assets_that_are_not_there_are_named() {
+    let mut document = preset("peoplesanspeople");
+    document.people.pose.clip = Choice::Always("wlak".to_owned());
+    document.background.wall.texture =
+        Choice::of([("bricks".to_owned(), 1.0), ("lost".to_owned(), 0.0)]);
+    let found: Vec<String> =
+        check_assets(&document, &catalogue()).iter().map(Problem::to_string).collect();
+    assert_eq!(
+        found,
+        [
+            "background.wall.texture: there is no texture \"bricks\"",
+            "people.pose.clip: there is no clip \"wlak\"; did you mean `walk`?",
+        ]
+    );
+    let none = Catalogue { textures: Vec::new(), ..catalogue() };
+    let document = preset("peoplesanspeople");
+    let error = sample(&document, &none, 0).unwrap_err();
+    assert!(matches!(&error, SampleError::Assets(p) if p.0.len() == 2), "{error}");
+    assert!(sample(&preset("starter"), &none, 0).is_ok(), "plain surfaces need no texture");
+}
+
+#[test]
+fn a_document_that_makes_no_sense_is_not_sampled() {
+    let mut document = preset("starter");
+    document.people.scale = Param::Constant(f64::NAN);
+    let error = sample(&document, &catalogue(), 0).unwrap_err();
+    assert!(error.to_string().starts_with("people.scale: "), "{error}");
+}
