@@ -28,6 +28,7 @@ pub use abi::DrawList;
 use crate::base::space::exposure_from_ev100;
 use crate::library::Library;
 use crate::library::clip::ClipError;
+use crate::library::figure::FigureError;
 use crate::library::textures::TextureError;
 use crate::scene::{Camera, Scene};
 use frustum::Frustum;
@@ -81,6 +82,9 @@ pub enum DrawError {
     /// A texture that the scene names cannot be had.
     #[error(transparent)]
     Texture(#[from] TextureError),
+    /// The scene names a face target that the figure has not.
+    #[error(transparent)]
+    Figure(#[from] FigureError),
     /// The scene names a clip that the library does not hold.
     #[error(transparent)]
     Clip(#[from] ClipError),

@@ -29,7 +29,7 @@ fn add_one(drawing: &mut Drawing, object: &Object) -> Result<Option<u32>, DrawEr
         return Ok(None);
     }
     let mesh = shape_mesh(object.shape, detail(drawing, center, scale, relevance));
-    let material = if drawing.options.shading {
+    let material = if drawing.options.shading && relevance.in_view {
         let list = &mut drawing.drawn.list;
         drawing.surfaces.of_object(&object.material, drawing.library, list)?
     } else {

@@ -10,9 +10,11 @@ use rayon::prelude::*;
 
 use super::objects::world_from_model;
 use super::{DrawError, DrawnPerson, Drawing, Relevance, abi, rows};
-use crate::geometry::person::{self, Dressed, RestBody};
+use crate::geometry::body::{RestBody, rest_body};
+use crate::geometry::person::{self, Dressed};
 use crate::geometry::points;
 use crate::geometry::pose::PosedSkeleton;
+use crate::geometry::skeleton::JOINT_COUNT;
 use crate::library::Library;
 use crate::library::figure::LOD_COUNT;
 use crate::scene::Person;
@@ -22,8 +24,6 @@ use crate::scene::Person;
 const LIMB_SLACK: f64 = 1.6;
 /// Cloth and hair in front of the skin, metres at scale 1.
 const COVER_M: f64 = 0.025;
-/// Skin, hair and clothes reach this far beyond the joints' sphere at most, as a share of stature.
-const FLESH_SHARE: f64 = 0.17;
 
 /// A person whose bones are settled.
 struct Posed<'a> {
@@ -68,16 +68,16 @@ fn pose_one<'a>(
     view_from_world: &DAffine3,
 ) -> Result<Posed<'a>, DrawError> {
     let clip = library.clips.get(&person.pose.clip)?;
-    let body = person::rest_body(&library.figure, person);
+    let body = rest_body(&library.figure, &person.body, &person.look.face)?;
     let frame = clip.sample(person.pose.phase);
-    let mut skeleton = PosedSkeleton::new(&body.joints_m, &frame, person.pose.mirrored);
-    skeleton.ground(body.ground.iter().copied());
+    let mut skeleton = PosedSkeleton::new(&body.heads_m, &frame, person.pose.mirrored);
+    skeleton.ground(body.ground.iter().map(|p| (p.rest_m, p.skin)));
     let view_from_model = *view_from_world * world_from_model(&person.placement);
     let scale = person.placement.scale.abs().max_element();
-    let (center, reach_m) = joint_sphere(&skeleton, &body);
+    let (center, radius_m) = bounds(&skeleton, &body);
     Ok(Posed {
         center_in_view: view_from_model.transform_point3(center),
-        radius_m: (reach_m + FLESH_SHARE * body.stature_m) * scale,
+        radius_m: radius_m * scale,
         person,
         body,
         skeleton,
@@ -86,18 +86,15 @@ fn pose_one<'a>(
     })
 }
 
-/// Centre and radius of a sphere round all posed joints, model space.
-fn joint_sphere(skeleton: &PosedSkeleton, body: &RestBody) -> (DVec3, f64) {
-    let joints: Vec<DVec3> = skeleton
-        .model_from_rest
-        .iter()
-        .zip(&body.joints_m)
-        .map(|(m, &head)| m.transform_point3(head))
-        .collect();
+/// Centre and radius of a sphere round the posed, dressed body, model space.
+fn bounds(skeleton: &PosedSkeleton, body: &RestBody) -> (DVec3, f64) {
+    let joints: [DVec3; JOINT_COUNT] =
+        std::array::from_fn(|j| skeleton.joint_m(j, body.heads_m[j]));
     let low = joints.iter().copied().fold(DVec3::INFINITY, DVec3::min);
     let high = joints.iter().copied().fold(DVec3::NEG_INFINITY, DVec3::max);
     let center = (low + high) * 0.5;
-    (center, joints.iter().map(|j| j.distance(center)).fold(0.0, f64::max))
+    let spheres = joints.iter().zip(&body.reach_m);
+    (center, spheres.map(|(j, reach)| j.distance(center) + reach).fold(0.0, f64::max))
 }
 
 fn relevance(drawing: &Drawing, posed: &Posed) -> Relevance {
@@ -128,7 +125,7 @@ fn add_mesh(
     let list = &mut drawing.drawn.list;
     let index = list.objects.len() as u32;
     for part in &dressed.parts {
-        let material = if drawing.options.shading {
+        let material = if drawing.options.shading && relevance.in_view {
             drawing.surfaces.of_person(&part.surface, drawing.library, list)?
         } else {
             drawing.surfaces.plain(list)
@@ -156,16 +153,21 @@ fn add_mesh(
 
 fn describe(index: usize, posed: &Posed, object: Option<u32>) -> DrawnPerson {
     let bones = &posed.skeleton.model_from_rest;
-    let keypoints_in_model = posed.body.keypoints.each_ref().map(|v| points::pose_point(bones, v));
+    let regressors = &posed.body.keypoints;
+    let in_view = |k: usize| {
+        let vertices = regressors[k].points.iter().zip(&regressors[k].weights);
+        let p_in_model =
+            points::pose_point(bones, vertices.map(|(p, &weight)| (p.rest_m, p.skin, weight)));
+        posed.view_from_model.transform_point3(p_in_model)
+    };
     DrawnPerson {
         person: index,
         instance: posed.person.slot as u16 + 1,
         object,
-        keypoints_in_view: keypoints_in_model.map(|p| posed.view_from_model.transform_point3(p)),
-        keypoint_tolerance_m: posed
-            .body
-            .keypoint_radius_m
-            .map(|r| (r * LIMB_SLACK + COVER_M) * posed.scale),
+        keypoints_in_view: std::array::from_fn(in_view),
+        keypoint_tolerance_m: std::array::from_fn(|k| {
+            (regressors[k].radius_m * LIMB_SLACK + COVER_M) * posed.scale
+        }),
         mass_kg: posed.body.mass_kg,
     }
 }

@@ -17,7 +17,7 @@ pub struct Surfaces {
 }
 
 impl Surfaces {
-    /// A surface for frames that nobody shades.
+    /// A surface for what nobody shades: frames without a picture, and what only casts a shadow.
     pub fn plain(&mut self, list: &mut DrawList) -> u32 {
         *self.plain.get_or_insert_with(|| push(list, abi::Material::default()))
     }

@@ -9,17 +9,6 @@ use glam::{DAffine3, DVec3};
 use super::skeleton::JOINT_COUNT;
 use crate::library::mesh::SkinVertex;
 
-/// A vertex with its share in a point that is a mean of vertices.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct WeightedVertex {
-    /// Rest position, model space, metres.
-    pub rest_m: DVec3,
-    /// Its joints.
-    pub skin: SkinVertex,
-    /// Its share; the shares of a point sum to 1, single ones may be negative.
-    pub weight: f64,
-}
-
 /// One vertex, posed: model space, metres.
 #[must_use]
 pub fn pose_vertex(
@@ -37,12 +26,16 @@ pub fn pose_vertex(
     posed
 }
 
-/// A weighted mean of vertices, posed: model space, metres.
+/// A weighted mean of vertices, posed: model space, metres. Each vertex comes with its rest position,
+/// its joints and its weight; the weights sum to 1, single ones may be negative.
 #[must_use]
-pub fn pose_point(model_from_rest: &[DAffine3; JOINT_COUNT], vertices: &[WeightedVertex]) -> DVec3 {
-    vertices
-        .iter()
-        .fold(DVec3::ZERO, |sum, v| sum + pose_vertex(model_from_rest, v.rest_m, v.skin) * v.weight)
+pub fn pose_point(
+    model_from_rest: &[DAffine3; JOINT_COUNT],
+    vertices: impl Iterator<Item = (DVec3, SkinVertex, f64)>,
+) -> DVec3 {
+    vertices.fold(DVec3::ZERO, |sum, (rest_m, skin, weight)| {
+        sum + pose_vertex(model_from_rest, rest_m, skin) * weight
+    })
 }
 
 #[cfg(test)]
@@ -67,12 +60,11 @@ mod tests {
 
     #[test]
     fn a_point_is_the_weighted_mean_of_its_vertices() {
-        let at = |x: f64, joint: u8, weight: f64| WeightedVertex {
-            rest_m: DVec3::new(x, 0.0, 0.0),
-            skin: SkinVertex { joints: [joint, 0, 0, 0], weights: [255, 0, 0, 0] },
-            weight,
+        let at = |x: f64, joint: u8, weight: f64| {
+            let skin = SkinVertex { joints: [joint, 0, 0, 0], weights: [255, 0, 0, 0] };
+            (DVec3::new(x, 0.0, 0.0), skin, weight)
         };
-        let p = pose_point(&skeleton(), &[at(1.0, 0, 1.25), at(5.0, 2, -0.25)]);
+        let p = pose_point(&skeleton(), [at(1.0, 0, 1.25), at(5.0, 2, -0.25)].into_iter());
         assert!((p - DVec3::new(1.25 - 0.25 * 7.0, 0.0, 1.0)).length() < 1e-15);
     }
 }
