@@ -30,11 +30,12 @@ fn catalogue() -> Catalogue {
 }
 
 fn preset(name: &str) -> Document {
-    file::parse(presets::find(name).unwrap().text).unwrap()
+    let text = presets::find(name).expect("the preset ships with the program").text;
+    file::parse(text).expect("a test of the presets themselves says why")
 }
 
 fn scene(document: &Document, frame: u32) -> Scene {
-    sample(document, &catalogue(), frame).unwrap()
+    sample(document, &catalogue(), frame).expect("a valid document")
 }
 
 fn mean_and_spread(values: &[f64]) -> (f64, f64) {
@@ -298,4 +299,88 @@ fn a_document_that_makes_no_sense_is_not_sampled() {
     document.people.scale = Param::Constant(f64::NAN);
     let error = sample(&document, &catalogue(), 0).unwrap_err();
     assert!(error.to_string().starts_with("people.scale: "), "{error}");
+}
+
+/// Every leaf of a config, by JSON pointer.
+fn leaves(value: &Value, path: &str, into: &mut Vec<String>) {
+    match value {
+        Value::Object(map) => {
+            map.iter().for_each(|(name, inner)| leaves(inner, &format!("{path}/{name}"), into));
+        }
+        Value::Array(items) => {
+            let all = items.iter().enumerate();
+            all.for_each(|(i, inner)| leaves(inner, &format!("{path}/{i}"), into));
+        }
+        _ => {}
+    }
+    if !path.is_empty() {
+        into.push(path.to_owned());
+    }
+}
+
+/// Whatever value is put wherever: the config is refused with a path, or its frames are sound.
+#[test]
+fn no_config_panics_hangs_or_gives_nonsense() {
+    let hostile = [
+        "-1",
+        "0",
+        "1",
+        "2.5",
+        "1e-300",
+        "1e300",
+        "1e9",
+        "4294967296",
+        "\"x\"",
+        "\"any\"",
+        "\"none\"",
+        "null",
+        "true",
+        "[]",
+        "{}",
+        "[0, 0, 0]",
+        "[1, 2]",
+        "{\"uniform\": [0, 1]}",
+        "{\"uniform\": [1, 0]}",
+        "{\"poisson\": 1000}",
+        "{\"mix\": [[1, 0.5], [0, -1]]}",
+        "{\"normal\": {\"mean\": 0.5, \"std\": 0.01}}",
+        "{\"choice\": [[0.5, 1]]}",
+        "{\"rotation\": \"uniform\"}",
+        "{\"bernoulli\": 0.5}",
+        "{\"mode\": \"row\", \"count\": 500, \"spacing_m\": 0.001}",
+        "{\"mode\": \"ground\", \"x_m\": [0, 20], \"z_m\": [0, 20], \"count\": 490, \"separation_m\": 0.999}",
+        "{\"mode\": \"ground\", \"x_m\": [0, 1], \"z_m\": [0, 1], \"count\": 500, \"separation_m\": 0}",
+        "{\"mode\": \"poisson_disk\", \"depth_m\": 0, \"separation_m\": 1e6}",
+    ];
+    let (mut accepted, mut refused) = (0, 0);
+    for preset_ in presets::ALL {
+        let base: Value = serde_json::from_str(preset_.text).unwrap();
+        let mut paths = Vec::new();
+        leaves(&base, "", &mut paths);
+        for (i, path) in paths.into_iter().enumerate() {
+            // A different handful for each path, each value for many paths.
+            for text in hostile.iter().cycle().skip(2 * i).take(2) {
+                let mut value = base.clone();
+                *value.pointer_mut(&path).unwrap() = serde_json::from_str(text).unwrap();
+                let Ok(document) = file::parse(&value.to_string()) else {
+                    refused += 1;
+                    continue;
+                };
+                match sample(&document, &catalogue(), 0) {
+                    // A number that is not finite is written as null.
+                    Ok(scene) => {
+                        let written = serde_json::to_string(&scene).unwrap();
+                        let read: Scene = serde_json::from_str(&written)
+                            .unwrap_or_else(|e| panic!("{path} = {text}: {e}"));
+                        assert!(read == scene, "{path} = {text}");
+                        assert!(scene.people.len() <= 500 && scene.objects.len() <= 10_002);
+                    }
+                    Err(SampleError::Assets(_)) => {}
+                    Err(error) => panic!("{path} = {text}: {error}"),
+                }
+                accepted += 1;
+            }
+        }
+    }
+    assert!(accepted > 100 && refused > 300, "{accepted} accepted, {refused} refused");
 }

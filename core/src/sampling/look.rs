@@ -1,5 +1,7 @@
 //! Skin, hair, eyes and faces. Where the document says `"auto"` they follow ancestry, age and sex.
 
+use std::collections::BTreeSet;
+
 use super::body::interpolate;
 use super::keys;
 use super::people::PersonTraits;
@@ -64,20 +66,19 @@ const STRONG_STD: f64 = 0.12;
 pub(super) type FaceShape<'a> = Vec<&'a str>;
 
 pub(super) fn face_shapes(targets: &[String]) -> Vec<FaceShape<'_>> {
-    let partner = |name: &str, from: &str, to: &str| {
-        let (folder, file) = name.rsplit_once('/').map_or(("", name), |(f, n)| (f, n));
-        let stem = file.strip_prefix(from)?;
-        let other =
-            if folder.is_empty() { format!("{to}{stem}") } else { format!("{folder}/{to}{stem}") };
-        targets.iter().find(|t| **t == other)
+    let known: BTreeSet<&str> = targets.iter().map(String::as_str).collect();
+    // `folder/l-name` and `folder/r-name`.
+    let other_side = |name: &str, from: &str, to: &str| {
+        let file = name.rfind('/').map_or(0, |slash| slash + 1);
+        let stem = name[file..].strip_prefix(from)?;
+        known.get(format!("{}{to}{stem}", &name[..file]).as_str()).copied()
     };
     let mut shapes = Vec::new();
     for name in targets {
-        if partner(name, "r-", "l-").is_some() {
-            continue;
+        if other_side(name, "r-", "l-").is_none() {
+            shapes
+                .push(std::iter::once(name.as_str()).chain(other_side(name, "l-", "r-")).collect());
         }
-        let right = partner(name, "l-", "r-");
-        shapes.push([Some(name), right].into_iter().flatten().map(String::as_str).collect());
     }
     shapes
 }

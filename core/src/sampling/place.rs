@@ -1,5 +1,7 @@
 //! Where things stand.
 
+use std::collections::BTreeMap;
+
 use glam::DVec3;
 
 use super::keys;
@@ -70,18 +72,57 @@ fn on_ground(ground: &Ground, keys: &PlaceKeys, draws: Draws) -> Places {
     let (x, z) = (ground.x_m, ground.z_m);
     let wanted = number(&ground.count, draws.of(keys.count, 0)).round().max(0.0) as u32;
     let mut points: Vec<(u32, DVec3)> = Vec::new();
+    let mut taken = Taken::new(ground.separation_m);
     for slot in 0..wanted {
         let mut stream = draws.of(keys.place, slot).stream();
         let spot = (0..TRIES).find_map(|_| {
             let across = x[0] + stream.uniform() * (x[1] - x[0]);
             let along = z[0] + stream.uniform() * (z[1] - z[0]);
             let point = DVec3::new(across, ground.y_m, along);
-            let free = points.iter().all(|(_, p)| p.distance(point) >= ground.separation_m);
-            free.then_some(point)
+            taken.has_room(point).then_some(point)
         });
-        points.extend(spot.map(|p| (slot, p)));
+        if let Some(point) = spot {
+            taken.add(point);
+            points.push((slot, point));
+        }
     }
     Places { points, wanted }
+}
+
+/// The points on the ground so far, by square cells as wide as their separation.
+struct Taken {
+    separation_m: f64,
+    cells: BTreeMap<(i64, i64), Vec<DVec3>>,
+}
+
+impl Taken {
+    fn new(separation_m: f64) -> Self {
+        Self { separation_m, cells: BTreeMap::new() }
+    }
+
+    fn cell_of(&self, p: DVec3) -> (i64, i64) {
+        // Where no distance is kept there is nothing to look up; casts saturate.
+        let index = |v: f64| (v / self.separation_m).floor() as i64;
+        (index(p.x), index(p.z))
+    }
+
+    fn has_room(&self, p: DVec3) -> bool {
+        if self.separation_m <= 0.0 {
+            return true;
+        }
+        let (column, row) = self.cell_of(p);
+        let near = |i: i64| i.saturating_sub(1)..=i.saturating_add(1);
+        near(column).flat_map(|c| near(row).map(move |r| (c, r))).all(|cell| {
+            let points = self.cells.get(&cell);
+            points.is_none_or(|all| all.iter().all(|q| q.distance(p) >= self.separation_m))
+        })
+    }
+
+    fn add(&mut self, p: DVec3) {
+        if self.separation_m > 0.0 {
+            self.cells.entry(self.cell_of(p)).or_default().push(p);
+        }
+    }
 }
 
 fn on_grid(grid: &Grid) -> Places {

@@ -81,7 +81,7 @@ impl Check {
     pub(super) fn weights(&mut self, path: &str, weights: impl Iterator<Item = f64>) -> bool {
         let (mut sum, mut count) = (0.0, 0);
         for (i, weight) in weights.enumerate() {
-            if !(weight >= 0.0 && weight <= 1e12) {
+            if !(0.0..=1e12).contains(&weight) {
                 let path = format!("{path}[{i}]");
                 return self.report(&path, format!("the weight must be >= 0, got {weight}"));
             }
