@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use super::{DrawError, DrawList, abi};
-use crate::geometry::person::{Mask, Surface};
+use crate::geometry::person::{Detail, Mask, Surface};
 use crate::library::Library;
 use crate::library::texture::Texture;
 use crate::scene;
@@ -56,7 +56,8 @@ impl Surfaces {
         list: &mut DrawList,
     ) -> Result<u32, DrawError> {
         let albedo_map = self.optional(surface.texture.as_deref(), library, list)?;
-        let detail_map = self.optional(surface.detail, library, list)?;
+        let (detail, uv_repeat) = detail_texture(surface.detail);
+        let detail_map = self.optional(detail, library, list)?;
         let mask = match surface.mask {
             Mask::None => None,
             Mask::Skin => Some(self.shared("figure/skin_mask", list, || Arc::clone(library.figure.skin_mask()))),
@@ -67,7 +68,7 @@ impl Surfaces {
             albedo_map,
             detail_map,
             detail_strength: surface.detail_strength,
-            uv_repeat: surface.uv_repeat,
+            uv_repeat,
             hue_offset_deg: surface.hue_offset_deg,
             roughness: surface.roughness,
             mask,
@@ -111,6 +112,17 @@ impl Surfaces {
             list.textures.push(get());
             list.textures.len() as u32 - 1
         })
+    }
+}
+
+/// Texture of a fine structure, and how often it repeats over 0..1. Cloth patterns share its
+/// repeats; skin and hair have none.
+const fn detail_texture(detail: Detail) -> (Option<&'static str>, [f32; 2]) {
+    match detail {
+        Detail::None => (None, [1.0; 2]),
+        Detail::Skin => (Some("detail/skin"), [8.0; 2]),
+        Detail::Cloth => (Some("detail/cloth"), [1.0; 2]),
+        Detail::Hair => (Some("detail/hair"), [4.0; 2]),
     }
 }
 
