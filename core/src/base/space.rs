@@ -27,7 +27,8 @@ pub fn cv_from_view(p_in_view: DVec3) -> DVec3 {
 }
 
 /// [`cv_from_view`] as a matrix: a half turn about x.
-pub const CV_FROM_VIEW: DMat3 = DMat3::from_cols_array(&[1.0, 0.0, 0.0, 0.0, -1.0, 0.0, 0.0, 0.0, -1.0]);
+pub const CV_FROM_VIEW: DMat3 =
+    DMat3::from_cols_array(&[1.0, 0.0, 0.0, 0.0, -1.0, 0.0, 0.0, 0.0, -1.0]);
 
 /// Linear scale from luminance in nits to the sensor's 0..1, for an exposure value at ISO 100:
 /// `1 / (1.2 * 2^EV100)` (Lagarde and de Rousiers, "Moving Frostbite to PBR", 2014, section 5.1).

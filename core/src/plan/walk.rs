@@ -94,13 +94,20 @@ mod tests {
             let plan = PassPlan::new(&wish, LIT);
             let mut have = BTreeSet::new();
             for pass in plan.passes() {
-                assert!(pass.reads().iter().all(|b| have.contains(b)), "{wish:?}: {pass:?} reads too early");
+                assert!(
+                    pass.reads().iter().all(|b| have.contains(b)),
+                    "{wish:?}: {pass:?} reads too early"
+                );
                 have.extend(pass.writes().iter().copied());
             }
-            assert!(wish.iter().flat_map(|o| o.needs()).all(|b| have.contains(b)), "{wish:?} incomplete");
+            assert!(
+                wish.iter().flat_map(|o| o.needs()).all(|b| have.contains(b)),
+                "{wish:?} incomplete"
+            );
             for (i, pass) in plan.passes().iter().enumerate() {
-                let read_later =
-                    plan.passes()[i + 1..].iter().any(|p| p.reads().iter().any(|b| pass.writes().contains(b)));
+                let read_later = plan.passes()[i + 1..]
+                    .iter()
+                    .any(|p| p.reads().iter().any(|b| pass.writes().contains(b)));
                 let asked = wish.iter().flat_map(|o| o.needs()).any(|b| pass.writes().contains(b));
                 assert!(read_later || asked, "{wish:?}: {pass:?} for nobody");
             }

@@ -11,7 +11,9 @@ mod camera;
 mod person;
 
 pub use camera::Camera;
-pub use person::{Body, Bottom, BottomKind, HairStyle, Look, Outfit, Person, Pose, Sex, Shoes, Top};
+pub use person::{
+    Body, Bottom, BottomKind, HairStyle, Look, Outfit, Person, Pose, Sex, Shoes, Top,
+};
 
 /// Everything that one frame shows.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -120,7 +122,19 @@ pub enum Role {
 }
 
 /// A primitive, inscribed in the unit cube centred on the model's origin.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize, schemars::JsonSchema)]
+#[derive(
+    Clone,
+    Copy,
+    Debug,
+    PartialEq,
+    Eq,
+    Hash,
+    PartialOrd,
+    Ord,
+    Serialize,
+    Deserialize,
+    schemars::JsonSchema,
+)]
 #[serde(rename_all = "snake_case")]
 pub enum Shape {
     /// Unit cube.
