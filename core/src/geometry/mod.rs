@@ -2,7 +2,23 @@
 //!
 //! Functions from a scene's values and the library's assets to points and triangles in model
 //! space. Cameras and pixels are not known here.
+//!
+//! | file | what it does |
+//! |---|---|
+//! | [`phenotype`] | sliders -> weights of shape targets -> vertex positions |
+//! | [`body`] | joints, keypoints, contact points and measures of a body at rest |
+//! | [`person`] | a dressed person at rest: skin, eyes, hair and clothes as one mesh |
+//! | `garment`, `hair`, `cut` | clothes and hair, cut from shells along scalar fields |
+//! | [`skeleton`], [`pose`] | joints, and clips retargeted to a body |
+//! | [`points`] | poses single vertices in double precision |
+//! | [`shape`] | primitive shapes |
 
+pub mod body;
+mod cut;
+mod garment;
+mod hair;
+pub mod person;
+pub mod phenotype;
 pub mod points;
 pub mod pose;
 pub mod shape;

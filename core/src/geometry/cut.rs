@@ -1,0 +1,332 @@
+//! Cuts surfaces along the zero of a field and collects the pieces of a person into one mesh.
+//!
+//! A cut is exact: triangles that the zero line crosses are clipped, new vertices interpolate
+//! everything, skin weights included. Hems get a small rim turned inwards, so that cloth has a
+//! thickness. What is cut where is decided by the callers.
+
+use std::collections::BTreeMap;
+use std::ops::Range;
+
+use glam::Vec3;
+
+use crate::library::mesh::{Mesh, SkinVertex};
+
+/// A surface to be cut: vertices of a group's prefix and triangles of its render vertices.
+pub(super) struct Surface<'a> {
+    /// Vertex of each render vertex.
+    pub render: &'a [u16],
+    /// Texture coordinates of the render vertices, u then v.
+    pub uvs: &'a [f32],
+    /// Three render vertices a triangle.
+    pub triangles: &'a [u16],
+    /// Metres, by vertex.
+    pub positions: &'a [Vec3],
+    /// Unit, by vertex.
+    pub normals: &'a [Vec3],
+    /// By vertex.
+    pub skin: &'a [SkinVertex],
+}
+
+/// Smooth unit normals of vertices, weighted by area; +Y where no triangle is.
+pub(super) fn smooth_normals(positions: &[Vec3], render: &[u16], triangles: &[u16]) -> Vec<Vec3> {
+    let mut sums = vec![Vec3::ZERO; positions.len()];
+    for t in triangles.chunks_exact(3) {
+        let [a, b, c] = [t[0], t[1], t[2]].map(|r| usize::from(render[usize::from(r)]));
+        let n = (positions[b] - positions[a]).cross(positions[c] - positions[a]);
+        sums[a] += n;
+        sums[b] += n;
+        sums[c] += n;
+    }
+    sums.iter().map(|n| n.normalize_or(Vec3::Y)).collect()
+}
+
+/// A hem's rim.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Rim {
+    /// How far it turns inwards, metres.
+    pub thickness_m: f32,
+    /// Two strips, the first half round, instead of one.
+    pub round: bool,
+}
+
+/// A growing mesh.
+#[derive(Default)]
+pub(super) struct Builder {
+    pub mesh: Mesh,
+    /// Mesh vertex of each render vertex of the surface in hand.
+    known: Vec<u32>,
+}
+
+const UNKNOWN: u32 = u32::MAX;
+
+/// A cut point: mesh vertex and the vertices between which it lies.
+type CutKey = (u16, u16);
+
+impl Builder {
+    fn start(&mut self, render: usize) -> u32 {
+        self.known.clear();
+        self.known.resize(render, UNKNOWN);
+        self.mesh.triangles.len() as u32
+    }
+
+    fn push(&mut self, p: Vec3, n: Vec3, uv: [f32; 2], s: SkinVertex) -> u32 {
+        self.mesh.positions.push(p.to_array());
+        self.mesh.normals.push(n.to_array());
+        self.mesh.uvs.push(uv);
+        self.mesh.skin.push(s);
+        self.mesh.positions.len() as u32 - 1
+    }
+
+    fn keep(&mut self, s: &Surface<'_>, r: u16) -> u32 {
+        let slot = usize::from(r);
+        if self.known[slot] == UNKNOWN {
+            let v = usize::from(s.render[slot]);
+            let uv = [s.uvs[2 * slot], s.uvs[2 * slot + 1]];
+            self.known[slot] = self.push(s.positions[v], s.normals[v], uv, s.skin[v]);
+        }
+        self.known[slot]
+    }
+
+    /// Adds the triangles for which `keep` holds; returns their range.
+    pub fn add_where(&mut self, s: &Surface<'_>, keep: impl Fn([usize; 3]) -> bool) -> Range<u32> {
+        let first = self.start(s.render.len());
+        for t in s.triangles.chunks_exact(3) {
+            let corners = [t[0], t[1], t[2]].map(|r| usize::from(s.render[usize::from(r)]));
+            if keep(corners) {
+                let tri = [t[0], t[1], t[2]].map(|r| self.keep(s, r));
+                self.mesh.triangles.push(tri);
+            }
+        }
+        first..self.mesh.triangles.len() as u32
+    }
+
+    /// Adds the part of a surface where `field` (by vertex) is not negative.
+    pub fn add_cut(&mut self, s: &Surface<'_>, field: &[f32], rim: Option<Rim>) -> Range<u32> {
+        let first = self.start(s.render.len());
+        let mut cuts = BTreeMap::<CutKey, u32>::new();
+        let mut hems = Vec::new();
+        for t in s.triangles.chunks_exact(3) {
+            let r = [t[0], t[1], t[2]];
+            let f = r.map(|r| field[usize::from(s.render[usize::from(r)])]);
+            let inside = f.map(|f| f >= 0.0);
+            match inside.iter().filter(|i| **i).count() {
+                0 => {}
+                3 => {
+                    let tri = r.map(|r| self.keep(s, r));
+                    self.mesh.triangles.push(tri);
+                }
+                kept => {
+                    // The odd corner comes first; the order round the triangle is kept.
+                    let odd = (0..3).find(|&i| inside[i] == (kept == 1)).unwrap_or(0);
+                    let [a, b, c] = [odd, (odd + 1) % 3, (odd + 2) % 3].map(|i| r[i]);
+                    let [fa, fb, fc] = [odd, (odd + 1) % 3, (odd + 2) % 3].map(|i| f[i]);
+                    let p = self.cut(s, &mut cuts, (a, fa), (b, fb));
+                    let q = self.cut(s, &mut cuts, (a, fa), (c, fc));
+                    if kept == 1 {
+                        let a = self.keep(s, a);
+                        self.mesh.triangles.push([a, p, q]);
+                        hems.push([
+                            (p, geometry_key(s, t, odd, 1)),
+                            (q, geometry_key(s, t, odd, 2)),
+                        ]);
+                    } else {
+                        let (b, c) = (self.keep(s, b), self.keep(s, c));
+                        self.mesh.triangles.extend([[b, c, p], [c, q, p]]);
+                        hems.push([
+                            (q, geometry_key(s, t, odd, 2)),
+                            (p, geometry_key(s, t, odd, 1)),
+                        ]);
+                    }
+                }
+            }
+        }
+        if let Some(rim) = rim {
+            self.add_rim(&hems, rim);
+        }
+        first..self.mesh.triangles.len() as u32
+    }
+
+    /// The point of an edge where the field is 0; the same for both triangles of the edge.
+    fn cut(
+        &mut self,
+        s: &Surface<'_>,
+        cuts: &mut BTreeMap<CutKey, u32>,
+        a: (u16, f32),
+        b: (u16, f32),
+    ) -> u32 {
+        let ((a, fa), (b, fb)) = if a.0 < b.0 { (a, b) } else { (b, a) };
+        if let Some(&known) = cuts.get(&(a, b)) {
+            return known;
+        }
+        let t = fa / (fa - fb);
+        let (i, j) = (usize::from(s.render[usize::from(a)]), usize::from(s.render[usize::from(b)]));
+        let (ua, ub) = (2 * usize::from(a), 2 * usize::from(b));
+        let uv = [0, 1].map(|k| s.uvs[ua + k] + (s.uvs[ub + k] - s.uvs[ua + k]) * t);
+        let new = self.push(
+            s.positions[i] + (s.positions[j] - s.positions[i]) * t,
+            (s.normals[i] + (s.normals[j] - s.normals[i]) * t).normalize_or(Vec3::Y),
+            uv,
+            mix_skin(s.skin[i], s.skin[j], t),
+        );
+        cuts.insert((a, b), new);
+        new
+    }
+
+    /// Strips along the hems' edges, each running with the cloth on its left seen from outside.
+    fn add_rim(&mut self, hems: &[[(u32, CutKey); 2]], rim: Rim) {
+        let at = |m: &Mesh, v: u32| Vec3::from_array(m.positions[v as usize]);
+        let normal = |m: &Mesh, v: u32| Vec3::from_array(m.normals[v as usize]);
+        // Directions out of the cloth, summed over the edges that meet in a point of the hem (by
+        // the shell's vertices, so that texture seams do not part them).
+        let mut out = BTreeMap::<CutKey, Vec3>::new();
+        for &[(p, kp), (q, kq)] in hems {
+            let along = at(&self.mesh, q) - at(&self.mesh, p);
+            let d = along.cross(normal(&self.mesh, p) + normal(&self.mesh, q));
+            *out.entry(kp).or_insert(Vec3::ZERO) += d;
+            *out.entry(kq).or_insert(Vec3::ZERO) += d;
+        }
+        let mut rings = BTreeMap::<u32, [u32; 2]>::new();
+        for &[(p, kp), (q, kq)] in hems {
+            let [a, b] = [(p, kp), (q, kq)].map(|(v, key)| {
+                *rings.entry(v).or_insert_with(|| {
+                    let (x, n) = (at(&self.mesh, v), normal(&self.mesh, v));
+                    let d = out[&key].normalize_or(n);
+                    let (uv, s) = (self.mesh.uvs[v as usize], self.mesh.skin[v as usize]);
+                    let t = rim.thickness_m;
+                    let middle =
+                        if rim.round { self.push(x + (d - n) * (0.5 * t), d, uv, s) } else { v };
+                    let inner = if rim.round { -n } else { d };
+                    [middle, self.push(x - n * t, inner, uv, s)]
+                })
+            });
+            if rim.round {
+                self.mesh.triangles.extend([[p, a[0], b[0]], [p, b[0], q]]);
+            }
+            self.mesh.triangles.extend([[a[0], a[1], b[1]], [a[0], b[1], b[0]]]);
+        }
+    }
+}
+
+/// Vertices of the cut edge between the odd corner and the one `step` after it.
+fn geometry_key(s: &Surface<'_>, t: &[u16], odd: usize, step: usize) -> CutKey {
+    let a = s.render[usize::from(t[odd])];
+    let b = s.render[usize::from(t[(odd + step) % 3])];
+    (a.min(b), a.max(b))
+}
+
+/// The four largest joints of two weighted sets, in 1/255 again.
+pub(super) fn mix_skin(a: SkinVertex, b: SkinVertex, t: f32) -> SkinVertex {
+    if a == b {
+        return a;
+    }
+    let mut all = [(0u8, 0.0f32); 8];
+    let mut n = 0;
+    for (s, share) in [(a, 1.0 - t), (b, t)] {
+        for (&j, &w) in s.joints.iter().zip(&s.weights).filter(|w| *w.1 > 0) {
+            let w = f32::from(w) * share;
+            if let Some(slot) = all[..n].iter_mut().find(|s| s.0 == j) {
+                slot.1 += w;
+            } else {
+                all[n] = (j, w);
+                n += 1;
+            }
+        }
+    }
+    all[..n].sort_by(|x, y| y.1.total_cmp(&x.1).then(x.0.cmp(&y.0)));
+    let kept = n.min(4);
+    let sum: f32 = all[..kept].iter().map(|s| s.1).sum();
+    let mut out = SkinVertex::default();
+    let mut left = 255u8;
+    for (i, &(j, w)) in all[..kept].iter().enumerate().rev() {
+        let units = if i == 0 { left } else { ((w / sum * 255.0 + 0.5) as u8).min(left) };
+        (out.joints[i], out.weights[i]) = (j, units);
+        left -= units;
+    }
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A strip of squares in the plane z = 0, x from 0 to n, y from 0 to 1.
+    fn strip(n: u16) -> (Vec<Vec3>, Vec<u16>, Vec<u16>) {
+        let positions =
+            (0..=n).flat_map(|i| [0.0, 1.0].map(|y| Vec3::new(f32::from(i), y, 0.0))).collect();
+        let triangles = (0..n)
+            .flat_map(|i| {
+                let a = 2 * i;
+                [a, a + 2, a + 3, a, a + 3, a + 1]
+            })
+            .collect();
+        (positions, (0..2 * n + 2).collect(), triangles)
+    }
+
+    fn cut(field: impl Fn(Vec3) -> f32, rim: Option<Rim>) -> Mesh {
+        let (positions, render, triangles) = strip(4);
+        let normals = smooth_normals(&positions, &render, &triangles);
+        let skin: Vec<SkinVertex> = (0..10)
+            .map(|i| SkinVertex { joints: [i, i + 1, 0, 0], weights: [200, 55, 0, 0] })
+            .collect();
+        let uvs: Vec<f32> = positions.iter().flat_map(|p| [p.x, p.y]).collect();
+        let f: Vec<f32> = positions.iter().map(|&p| field(p)).collect();
+        let mut b = Builder::default();
+        let s = Surface {
+            render: &render,
+            uvs: &uvs,
+            triangles: &triangles,
+            positions: &positions,
+            normals: &normals,
+            skin: &skin,
+        };
+        b.add_cut(&s, &f, rim);
+        b.mesh
+    }
+
+    fn area(m: &Mesh) -> f32 {
+        m.triangles
+            .iter()
+            .map(|t| {
+                let [a, b, c] = t.map(|v| Vec3::from_array(m.positions[v as usize]));
+                (b - a).cross(c - a).z * 0.5
+            })
+            .sum()
+    }
+
+    #[test]
+    fn a_cut_keeps_exactly_the_area_on_its_side() {
+        // A slanted line from (1.25, 0) to (1.75, 1): the trapezium left of it.
+        let m = cut(|p| 1.25 + 0.5 * p.y - p.x, None);
+        assert!((area(&m) - 1.5).abs() < 1e-5, "{}", area(&m));
+        for (p, uv) in m.positions.iter().zip(&m.uvs) {
+            assert!((p[0] - uv[0]).abs() < 1e-5 && (p[1] - uv[1]).abs() < 1e-5);
+            assert!(p[0] <= 1.25 + 0.5 * p[1] + 1e-5);
+        }
+        assert!(m.skin.iter().all(|s| s.weights.iter().map(|&w| u32::from(w)).sum::<u32>() == 255));
+    }
+
+    #[test]
+    fn a_rim_points_out_of_the_cloth_and_turns_inwards() {
+        let m = cut(|p| 2.5 - p.x, Some(Rim { thickness_m: 0.1, round: true }));
+        let farthest = m.positions.iter().map(|p| p[0]).fold(f32::MIN, f32::max);
+        assert!((farthest - 2.55).abs() < 1e-5, "{farthest}");
+        let deepest = m.positions.iter().map(|p| p[2]).fold(f32::MAX, f32::min);
+        assert!((deepest + 0.1).abs() < 1e-5, "{deepest}");
+        // Seen from outside the opening the rim's faces are front faces.
+        for t in &m.triangles {
+            let [a, b, c] = t.map(|v| Vec3::from_array(m.positions[v as usize]));
+            let n = (b - a).cross(c - a);
+            assert!(n.z > 0.0 || n.x > 0.0, "{n}");
+        }
+    }
+
+    #[test]
+    fn mixed_weights_keep_the_largest_and_sum_to_255() {
+        let a = SkinVertex { joints: [1, 2, 3, 4], weights: [100, 80, 50, 25] };
+        let b = SkinVertex { joints: [5, 2, 6, 7], weights: [120, 100, 30, 5] };
+        let m = mix_skin(a, b, 0.5);
+        assert_eq!(m.joints[0], 2);
+        assert_eq!(m.weights.iter().map(|&w| u32::from(w)).sum::<u32>(), 255);
+        assert_eq!(mix_skin(a, b, 0.0), a);
+    }
+}

@@ -1,0 +1,390 @@
+//! A dressed person at rest: one mesh in parts, each with its surface.
+//!
+//! Figure, person and rest body flow in, a [`Dressed`] mesh flows out, in model space with skin
+//! weights: soles at y = 0, facing +Z. A coarser level of detail costs proportionally less, since
+//! every level evaluates only a prefix of the vertices. Poses, textures' pixels and the camera are
+//! not known here.
+
+use std::ops::Range;
+
+use glam::Vec3;
+
+use super::body::{RestBody, SOLE_M};
+use super::cut::{Builder, Rim, Surface as Cloth, smooth_normals};
+use super::garment::{self, Cuts, Fields};
+use super::{hair, phenotype};
+use crate::library::figure::{Figure, GroupId, LOD_COUNT};
+use crate::library::mesh::{Mesh, SkinVertex};
+use crate::scene::{HairStyle, Look, Person};
+
+/// What a part of a person is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum PartKind {
+    /// Bare skin.
+    Skin,
+    /// Eyeballs.
+    Eyes,
+    /// Teeth.
+    Teeth,
+    /// Hair on the head.
+    Hair,
+    /// Garment of the upper body.
+    Top,
+    /// Garment of the legs.
+    Bottom,
+    /// Shoes without their soles.
+    Shoes,
+    /// Soles of the shoes.
+    Soles,
+}
+
+/// Which mask texture colours a surface's layers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Mask {
+    /// None: the layers are unused.
+    None,
+    /// The figure's skin mask.
+    Skin,
+    /// The figure's eye mask.
+    Eye,
+}
+
+/// Kind of fine structure, to be looked up as a detail texture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Detail {
+    /// Smooth.
+    None,
+    /// Pores and blotches.
+    Skin,
+    /// Woven cloth.
+    Cloth,
+    /// Strands along v.
+    Hair,
+}
+
+/// What a part looks like. Colours are linear.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Surface {
+    /// Multiplies the texture.
+    pub base_color: [f32; 3],
+    /// Perceptual roughness.
+    pub roughness: f32,
+    /// Light round the terminator, 0..0.5.
+    pub wrap: f32,
+    /// Mask of the layers.
+    pub mask: Mask,
+    /// Colour and roughness of the mask's four layers.
+    pub layers: [[f32; 4]; 4],
+    /// Cloth pattern: texture id in the library.
+    pub texture: Option<String>,
+    /// Rotation of the hue.
+    pub hue_offset_deg: f32,
+    /// Fine structure.
+    pub detail: Detail,
+    /// Its strength.
+    pub detail_strength: f32,
+}
+
+/// A range of a person's triangles with one surface.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Part {
+    /// What it is.
+    pub kind: PartKind,
+    /// Range of the mesh's triangles.
+    pub triangles: Range<u32>,
+    /// Its back can be seen, through an opening of the cloth.
+    pub double_sided: bool,
+    /// What it looks like.
+    pub surface: Surface,
+}
+
+/// A dressed person at rest.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Dressed {
+    /// All parts, with skin weights.
+    pub mesh: Mesh,
+    /// Parts in a fixed order; empty ones are left out.
+    pub parts: Vec<Part>,
+}
+
+/// A group evaluated for one person at one level of detail.
+struct Evaluated<'a> {
+    render: &'a [u16],
+    uvs: &'a [f32],
+    triangles: &'a [u16],
+    positions: Vec<Vec3>,
+    normals: Vec<Vec3>,
+    skin: &'a [SkinVertex],
+}
+
+impl<'a> Evaluated<'a> {
+    fn new(figure: &'a Figure, rest: &RestBody, id: GroupId, lod: usize) -> Self {
+        let group = figure.group(id);
+        let level = &group.lods[lod];
+        let range = figure.vertices(id, level.vertices);
+        let positions: Vec<Vec3> = phenotype::evaluate(figure, &rest.shape, range.clone())
+            .into_iter()
+            .map(Vec3::from_array)
+            .collect();
+        let normals = smooth_normals(&positions, &group.render, &level.triangles);
+        Self {
+            render: &group.render[..level.render as usize],
+            uvs: &group.uvs[..2 * level.render as usize],
+            triangles: &level.triangles,
+            positions,
+            normals,
+            skin: &figure.skin()[range],
+        }
+    }
+
+    fn surface(&self) -> Cloth<'_> {
+        self.with(&self.positions, &self.normals)
+    }
+
+    /// The same triangles with other positions and normals.
+    fn with<'b>(&'b self, positions: &'b [Vec3], normals: &'b [Vec3]) -> Cloth<'b> {
+        Cloth {
+            render: self.render,
+            uvs: self.uvs,
+            triangles: self.triangles,
+            positions,
+            normals,
+            skin: self.skin,
+        }
+    }
+
+    fn normals_of(&self, positions: &[Vec3]) -> Vec<Vec3> {
+        smooth_normals(positions, self.render, self.triangles)
+    }
+}
+
+/// The mesh and the parts while they grow.
+struct Parts {
+    builder: Builder,
+    parts: Vec<Part>,
+}
+
+impl Parts {
+    fn add(&mut self, kind: PartKind, triangles: Range<u32>, double_sided: bool, surface: Surface) {
+        if !triangles.is_empty() {
+            self.parts.push(Part { kind, triangles, double_sided, surface });
+        }
+    }
+}
+
+/// Dresses a person at a level of detail, 0 the finest; levels beyond the coarsest are the
+/// coarsest.
+#[must_use]
+pub fn dress(figure: &Figure, person: &Person, rest: &RestBody, lod: usize) -> Dressed {
+    let lod = lod.min(LOD_COUNT - 1);
+    let cuts = Cuts::new(&person.outfit);
+    let mut out = Parts { builder: Builder::default(), parts: Vec::new() };
+    add_skin(&mut out, figure, person, rest, &cuts, lod);
+    add_face(&mut out, figure, person, rest, lod);
+    add_hair(&mut out, figure, &person.look, rest, lod);
+    add_clothes(&mut out, figure, person, rest, &cuts, lod);
+    let mut mesh = out.builder.mesh;
+    bound(&mut mesh);
+    Dressed { mesh, parts: out.parts }
+}
+
+fn add_skin(
+    out: &mut Parts,
+    figure: &Figure,
+    person: &Person,
+    rest: &RestBody,
+    cuts: &Cuts,
+    lod: usize,
+) {
+    let mut skin = Evaluated::new(figure, rest, GroupId::Skin, lod);
+    let count = skin.positions.len() as u32;
+    let fields = garment::fields(figure, cuts, GroupId::Skin, count);
+    let hidden = garment::hidden(figure, cuts, &fields);
+    garment::tuck(figure, &fields, &mut skin.positions, &skin.normals);
+    let range = out.builder.add_where(&skin.surface(), |t| !t.iter().all(|&v| hidden[v]));
+    out.add(PartKind::Skin, range, false, skin_surface(&person.look));
+}
+
+fn add_face(out: &mut Parts, figure: &Figure, person: &Person, rest: &RestBody, lod: usize) {
+    let eyes = Evaluated::new(figure, rest, GroupId::Eyes, lod);
+    let range = out.builder.add_where(&eyes.surface(), |_| true);
+    out.add(PartKind::Eyes, range, false, eye_surface(&person.look));
+    if opens_mouth(&person.look) {
+        let teeth = Evaluated::new(figure, rest, GroupId::Teeth, lod);
+        let range = out.builder.add_where(&teeth.surface(), |_| true);
+        out.add(PartKind::Teeth, range, true, plain([0.78, 0.74, 0.64], 0.25));
+    }
+}
+
+/// Whether an expression parts the lips. Expressions are named in camel case, shapes with dashes.
+fn opens_mouth(look: &Look) -> bool {
+    look.face.iter().any(|(name, amount)| {
+        *amount > 0.05
+            && (name.starts_with("jaw") || name.starts_with("mouth"))
+            && !name.contains('-')
+    })
+}
+
+fn add_hair(out: &mut Parts, figure: &Figure, look: &Look, rest: &RestBody, lod: usize) {
+    if look.hair == HairStyle::Bald {
+        return;
+    }
+    let roots = Evaluated::new(figure, rest, GroupId::HairCap, lod);
+    let scale = rest.head_scale as f32 * rest.shape.scale;
+    let Some((positions, normals)) = hair::cap(figure, look.hair, lod, scale, &roots.positions)
+    else {
+        return;
+    };
+    let cap = out.builder.add_where(&roots.with(&positions, &normals), |_| true);
+    let mut end = cap.end;
+    if hair::has_curtain(look.hair) {
+        let curtain = Evaluated::new(figure, rest, GroupId::HairCurtain, lod);
+        end = out.builder.add_where(&curtain.surface(), |_| true).end;
+    }
+    out.add(PartKind::Hair, cap.start..end, true, hair_surface(look));
+}
+
+fn add_clothes(
+    out: &mut Parts,
+    figure: &Figure,
+    person: &Person,
+    rest: &RestBody,
+    cuts: &Cuts,
+    lod: usize,
+) {
+    let shell = Evaluated::new(figure, rest, GroupId::Shell, lod);
+    let count = shell.positions.len() as u32;
+    let fields = garment::fields(figure, cuts, GroupId::Shell, count);
+    let layers = garment::layers(figure, cuts, &fields, lod, &shell.positions, &shell.normals);
+    let rim = (lod < 3).then_some(Rim { thickness_m: 0.0035, round: lod < 2 });
+    let field = |f: fn(&Fields) -> f32| -> Vec<f32> { fields.iter().map(f).collect() };
+    let outfit = &person.outfit;
+
+    let cut = |out: &mut Parts, layer: &[Vec3], field: &[f32], rim| {
+        let normals = shell.normals_of(layer);
+        out.builder.add_cut(&shell.with(layer, &normals), field, rim)
+    };
+    let range = cut(out, &layers.bottom, &field(|f| f.bottom), rim);
+    let b = &outfit.bottom;
+    out.add(PartKind::Bottom, range, true, cloth(b.color, b.texture.as_ref(), b.hue_offset_deg));
+    let range = cut(out, &layers.top, &field(|f| f.top), rim);
+    let t = &outfit.top;
+    out.add(PartKind::Top, range, true, cloth(t.color, t.texture.as_ref(), t.hue_offset_deg));
+
+    // Shoes and soles meet a little above the ground.
+    let edge_m = SOLE_M + 0.006;
+    let split = |sign: f32| -> Vec<f32> {
+        fields.iter().zip(&layers.shoes).map(|(f, p)| f.shoes.min(sign * (p.y - edge_m))).collect()
+    };
+    let range = cut(out, &layers.shoes, &split(1.0), rim);
+    out.add(PartKind::Shoes, range, true, plain(narrow(outfit.shoes.color), 0.45));
+    let range = cut(out, &layers.soles, &split(-1.0), None);
+    out.add(PartKind::Soles, range, true, plain(sole_color(outfit.shoes.color), 0.8));
+}
+
+/// Sets the sphere round all vertices: the middle of their box and the farthest of them.
+fn bound(mesh: &mut Mesh) {
+    let (mut low, mut high) = (Vec3::splat(f32::MAX), Vec3::splat(f32::MIN));
+    for p in mesh.positions.iter().map(|p| Vec3::from_array(*p)) {
+        (low, high) = (low.min(p), high.max(p));
+    }
+    let center = (low + high) * 0.5;
+    let far = |p: &[f32; 3]| (Vec3::from_array(*p) - center).length();
+    mesh.radius_m = mesh.positions.iter().map(far).fold(0.0, f32::max);
+    mesh.center = center.to_array();
+}
+
+fn narrow(color: [f64; 3]) -> [f32; 3] {
+    color.map(|c| c as f32)
+}
+
+fn tinted(color: [f32; 3], by: [f32; 3]) -> [f32; 3] {
+    std::array::from_fn(|i| (color[i] * by[i]).clamp(0.0, 1.0))
+}
+
+fn layer(color: [f32; 3], roughness: f32) -> [f32; 4] {
+    [color[0], color[1], color[2], roughness]
+}
+
+fn plain(base_color: [f32; 3], roughness: f32) -> Surface {
+    Surface {
+        base_color,
+        roughness,
+        wrap: 0.0,
+        mask: Mask::None,
+        layers: [[0.0; 4]; 4],
+        texture: None,
+        hue_offset_deg: 0.0,
+        detail: Detail::None,
+        detail_strength: 0.0,
+    }
+}
+
+fn skin_surface(look: &Look) -> Surface {
+    let skin = narrow(look.skin_color);
+    let hair = narrow(look.hair_color);
+    // Shaven heads show a shade of stubble; under hair the scalp takes its colour.
+    let scalp = match look.hair {
+        HairStyle::Bald => mix(skin, tinted(skin, [0.86, 0.84, 0.85]), 0.5),
+        HairStyle::Cropped => mix(skin, hair, 0.85),
+        HairStyle::Short | HairStyle::Afro | HairStyle::Long => mix(skin, hair, 0.95),
+    };
+    Surface {
+        wrap: 0.25,
+        mask: Mask::Skin,
+        layers: [
+            layer(tinted(skin, [0.78, 0.44, 0.43]), 0.40),
+            layer(mix(hair, tinted(skin, [0.5, 0.45, 0.42]), 0.25), 0.65),
+            layer(tinted(skin, [0.86, 0.58, 0.53]), 0.50),
+            layer(scalp, 0.60),
+        ],
+        detail: Detail::Skin,
+        detail_strength: 0.12,
+        ..plain(skin, 0.55)
+    }
+}
+
+fn mix(a: [f32; 3], b: [f32; 3], t: f32) -> [f32; 3] {
+    std::array::from_fn(|i| a[i] + (b[i] - a[i]) * t)
+}
+
+fn eye_surface(look: &Look) -> Surface {
+    let white = [0.72, 0.70, 0.68];
+    Surface {
+        mask: Mask::Eye,
+        layers: [
+            layer(narrow(look.iris_color), 0.12),
+            layer([0.008, 0.007, 0.007], 0.10),
+            layer(tinted(white, [0.82, 0.66, 0.62]), 0.20),
+            [0.0; 4],
+        ],
+        ..plain(white, 0.12)
+    }
+}
+
+fn hair_surface(look: &Look) -> Surface {
+    Surface {
+        detail: Detail::Hair,
+        detail_strength: 0.45,
+        wrap: 0.10,
+        ..plain(narrow(look.hair_color), 0.50)
+    }
+}
+
+fn cloth(color: [f64; 3], texture: Option<&String>, hue_offset_deg: f64) -> Surface {
+    Surface {
+        texture: texture.cloned(),
+        hue_offset_deg: hue_offset_deg as f32,
+        detail: Detail::Cloth,
+        detail_strength: 0.10,
+        ..plain(narrow(color), 0.85)
+    }
+}
+
+/// Rubber: white under dark shoes now and then would need a value of its own, so soles follow the
+/// shoe's colour, darker if it is light and lighter if it is dark.
+fn sole_color(shoe: [f64; 3]) -> [f32; 3] {
+    let shoe = narrow(shoe);
+    let light = 0.2126 * shoe[0] + 0.7152 * shoe[1] + 0.0722 * shoe[2];
+    if light > 0.25 { tinted(shoe, [0.35, 0.33, 0.32]) } else { mix(shoe, [0.55, 0.53, 0.5], 0.35) }
+}

@@ -1,0 +1,281 @@
+//! The human figure: body shapes, rig, garment shell, hair, keypoints and masks.
+//!
+//! Bytes of `assets/figure.fig` flow in, an immutable [`Figure`] flows out, shared by `Arc`. What
+//! a given person looks like is decided in `geometry`, not here.
+
+use std::io::Read;
+use std::ops::Range;
+use std::sync::{Arc, LazyLock};
+
+pub mod data;
+mod eye;
+pub mod predict;
+mod stream;
+
+pub use data::{FigureData, Group, GroupId, LOD_COUNT, Lod};
+use data::{KEYPOINT_VERTICES, MAX_FACTORS};
+
+use crate::library::mesh::SkinVertex;
+use crate::library::texture::{Encoding, Texture};
+
+/// Joints of the rig.
+pub const JOINT_COUNT: usize = 52;
+/// Level of detail from which a body's volume is measured.
+pub const VOLUME_LOD: usize = 3;
+
+/// Why a figure could not be used.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum FigureError {
+    /// The file does not hold what a figure file holds.
+    #[error(
+        "figure file: {what} is missing, too short or out of range; \
+         expected a file written by figurant-bake of this version"
+    )]
+    Malformed {
+        /// Part of the file.
+        what: &'static str,
+    },
+    /// Not a zstd stream, or a damaged one.
+    #[error("figure file cannot be unpacked ({0}); it is damaged or not a figure file")]
+    Compressed(String),
+    /// A person names a face target that the figure has not.
+    #[error("unknown face target `{name}`; the nearest one is `{nearest}`")]
+    UnknownFaceTarget {
+        /// As it was written.
+        name: String,
+        /// The most similar name of the library.
+        nearest: String,
+    },
+}
+
+/// The human figure with all its shapes.
+#[derive(Debug)]
+pub struct Figure {
+    data: FigureData,
+    skin: Vec<SkinVertex>,
+    skin_mask: Arc<Texture>,
+    eye_mask: Arc<Texture>,
+}
+
+/// A macro target's row: the target and the keywords whose weights multiply.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct MacroRow<'a> {
+    /// Index of the target.
+    pub target: usize,
+    /// Indices in [`data::KEYWORDS`], padded with [`data::NO_KEYWORD`].
+    pub keywords: &'a [u8],
+}
+
+/// Three runs of numbers of equal length, one per axis.
+#[derive(Clone, Copy, Debug)]
+pub struct Planes<'a, T> {
+    /// Along +X.
+    pub x: &'a [T],
+    /// Along +Y.
+    pub y: &'a [T],
+    /// Along +Z.
+    pub z: &'a [T],
+}
+
+impl<'a, T> Planes<'a, T> {
+    fn of(all: &'a [T]) -> Self {
+        let n = all.len() / 3;
+        Self { x: &all[..n], y: &all[n..2 * n], z: &all[2 * n..] }
+    }
+}
+
+impl Figure {
+    /// The figure that is part of the program, unpacked once.
+    ///
+    /// # Errors
+    /// Only if the program was built with a file that the bake program did not write.
+    pub fn built_in() -> Result<Arc<Self>, FigureError> {
+        static FIGURE: LazyLock<Result<Arc<Figure>, FigureError>> = LazyLock::new(|| {
+            Figure::from_bytes(include_bytes!("../../../../assets/figure.fig")).map(Arc::new)
+        });
+        FIGURE.clone()
+    }
+
+    /// Unpacks and checks the bytes of a figure file.
+    ///
+    /// # Errors
+    /// Says which part of the file is damaged.
+    pub fn from_bytes(packed: &[u8]) -> Result<Self, FigureError> {
+        let mut bytes = Vec::new();
+        ruzstd::decoding::StreamingDecoder::new(packed)
+            .map_err(|e| FigureError::Compressed(e.to_string()))?
+            .read_to_end(&mut bytes)
+            .map_err(|e| FigureError::Compressed(e.to_string()))?;
+        let data = FigureData::from_bytes(&bytes)?;
+        if data.joint_names.len() != JOINT_COUNT {
+            return Err(FigureError::Malformed { what: "joint names" });
+        }
+        let skin = data
+            .skin_joints
+            .chunks_exact(4)
+            .zip(data.skin_weights.chunks_exact(4))
+            .map(|(j, w)| SkinVertex {
+                joints: [j[0], j[1], j[2], j[3]],
+                weights: [w[0], w[1], w[2], w[3]],
+            })
+            .collect();
+        let skin_mask = Arc::new(mask_texture(&data.mask));
+        Ok(Self { data, skin, skin_mask, eye_mask: Arc::new(eye::mask()) })
+    }
+
+    /// The raw tables.
+    #[must_use]
+    pub const fn data(&self) -> &FigureData {
+        &self.data
+    }
+
+    /// A group of vertices.
+    #[must_use]
+    pub fn group(&self, id: GroupId) -> &Group {
+        &self.data.groups[id as usize]
+    }
+
+    /// The first `count` vertices of a group among all vertices.
+    #[must_use]
+    pub fn vertices(&self, id: GroupId, count: u32) -> Range<usize> {
+        let first = self.group(id).first as usize;
+        first..first + count as usize
+    }
+
+    /// Template positions, metres.
+    #[must_use]
+    pub fn template(&self) -> Planes<'_, f32> {
+        Planes::of(&self.data.positions)
+    }
+
+    /// Joints and weights of all vertices.
+    #[must_use]
+    pub fn skin(&self) -> &[SkinVertex] {
+        &self.skin
+    }
+
+    /// All macro rows.
+    pub fn macro_rows(&self) -> impl Iterator<Item = MacroRow<'_>> {
+        self.data
+            .macro_target
+            .iter()
+            .zip(self.data.macro_factors.chunks_exact(MAX_FACTORS))
+            .map(|(&target, keywords)| MacroRow { target: usize::from(target), keywords })
+    }
+
+    /// Deltas of a macro target over all vertices, in [`data::DELTA_UNIT_M`].
+    #[must_use]
+    pub fn macro_target(&self, target: usize) -> Planes<'_, i16> {
+        let n = 3 * self.data.vertex_count();
+        Planes::of(&self.data.macro_deltas[target * n..(target + 1) * n])
+    }
+
+    /// Names of the local targets of the face: shapes (`nose-hump-incr`) and expressions
+    /// (`mouthSmileLeft`), each good from 0 to 1.
+    #[must_use]
+    pub fn face_target_names(&self) -> &[String] {
+        &self.data.local_names
+    }
+
+    /// Index of a local target.
+    ///
+    /// # Errors
+    /// [`FigureError::UnknownFaceTarget`] suggests the nearest name.
+    pub fn face_target(&self, name: &str) -> Result<usize, FigureError> {
+        let names = &self.data.local_names;
+        names.iter().position(|n| n == name).ok_or_else(|| FigureError::UnknownFaceTarget {
+            name: name.to_owned(),
+            nearest: names
+                .iter()
+                .min_by_key(|n| strsim::levenshtein(n, name))
+                .cloned()
+                .unwrap_or_default(),
+        })
+    }
+
+    /// Vertices and deltas (x, y, z in [`data::DELTA_UNIT_M`]) of a local target, ascending.
+    #[must_use]
+    pub fn face_deltas(&self, target: usize) -> (&[u16], Planes<'_, i16>) {
+        let d = &self.data;
+        let range = d.local_start[target] as usize..d.local_start[target + 1] as usize;
+        let all = Planes::of(&d.local_delta);
+        let planes =
+            Planes { x: &all.x[range.clone()], y: &all.y[range.clone()], z: &all.z[range.clone()] };
+        (&d.local_vertex[range], planes)
+    }
+
+    /// Names of the joints, those of the widespread 52-joint humanoid rig.
+    #[must_use]
+    pub fn joint_names(&self) -> &[String] {
+        &self.data.joint_names
+    }
+
+    /// Parent of a joint, nothing for the root. Parents have smaller indices.
+    #[must_use]
+    pub fn joint_parent(&self, joint: usize) -> Option<usize> {
+        Some(usize::from(self.data.joint_parent[joint])).filter(|&p| p != 255)
+    }
+
+    /// Names of the keypoints, COCO's seventeen first.
+    #[must_use]
+    pub fn keypoint_names(&self) -> &[String] {
+        &self.data.keypoint_names
+    }
+
+    /// Vertices and weights that regress a keypoint.
+    pub fn keypoint(&self, k: usize) -> impl Iterator<Item = (usize, f32)> + '_ {
+        let range = k * KEYPOINT_VERTICES..(k + 1) * KEYPOINT_VERTICES;
+        self.data.keypoint_vertices[range.clone()]
+            .iter()
+            .zip(&self.data.keypoint_weights[range])
+            .map(|(&v, &w)| (usize::from(v), w))
+    }
+
+    /// Geometric error of a level of detail, metres on the template; 0 for the finest.
+    #[must_use]
+    pub fn lod_error_m(&self, lod: usize) -> f32 {
+        self.group(GroupId::Skin).lods[lod]
+            .error_m
+            .max(self.group(GroupId::Shell).lods[lod].error_m)
+    }
+
+    /// Masks over the skin: red lips and mouth, green brows, blue flushed places, alpha scalp.
+    #[must_use]
+    pub const fn skin_mask(&self) -> &Arc<Texture> {
+        &self.skin_mask
+    }
+
+    /// Masks over an eyeball: red iris, green pupil and its dark rim, blue the veined outer white.
+    #[must_use]
+    pub const fn eye_mask(&self) -> &Arc<Texture> {
+        &self.eye_mask
+    }
+}
+
+fn mask_texture(planar: &[u8]) -> Texture {
+    let texels = planar.len() / 4;
+    let channel = |c: usize, i: usize| u32::from(planar[c * texels + i]) << (8 * c);
+    let top = (0..texels).map(|i| (0..4).map(|c| channel(c, i)).sum()).collect();
+    with_mips(texels.isqrt().ilog2(), top)
+}
+
+/// All levels of a mask by 2x2 means, rounded to nearest.
+fn with_mips(log2_size: u32, top: Vec<u32>) -> Texture {
+    let mut texels = top;
+    for level in 1..=log2_size {
+        let (from, size) =
+            (Texture::level_offset(log2_size, level - 1), 1usize << (log2_size - level));
+        for y in 0..size {
+            for x in 0..size {
+                let at = |dx, dy| texels[from + (2 * y + dy) * 2 * size + 2 * x + dx];
+                let four = [at(0, 0), at(1, 0), at(0, 1), at(1, 1)];
+                let mean = (0..4).fold(0, |out, c| {
+                    let sum: u32 = four.iter().map(|t| (t >> (8 * c)) & 255).sum();
+                    out | ((sum + 2) / 4) << (8 * c)
+                });
+                texels.push(mean);
+            }
+        }
+    }
+    Texture { log2_size, encoding: Encoding::Linear, texels }
+}
