@@ -1,1 +1,5 @@
 //! What the tests share.
+
+pub mod drawlists;
+pub mod meshes;
+pub mod oracle;
