@@ -220,6 +220,9 @@ fn shading_agrees_with_the_oracle() {
                 for c in 0..3 {
                     let error = (f64::from(got[c]) - display(light[c], 1.0)).abs();
                     apart += usize::from(error > 0.75);
+                    let expected = light.map(|v| display(v, 1.0));
+                    assert!(error < 1.5, "scene {seed} at {x},{y}: {got:?} is not {expected:?}");
+                }
             }
         }
     }
