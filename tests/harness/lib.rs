@@ -1,1 +1,6 @@
 //! What the tests share.
+
+pub mod crowd;
+pub mod drawlists;
+pub mod meshes;
+pub mod oracle;

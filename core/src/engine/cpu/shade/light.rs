@@ -12,7 +12,8 @@
 //! F = f0 + (1 - f0) (1 - v.h)^5
 //! ```
 //!
-//! `wrap` w replaces the `n.l` of the Lambert term by `max(n.l + w, 0) / (1 + w)^2`, which keeps
+//! Normals may lean away from the viewer: `n.v` is taken as at least 0.001, also within
+//! `n.h = (n.l + n.v) / |l + v|`, which is at most 1. `wrap` w replaces the `n.l` of the Lambert term by `max(n.l + w, 0) / (1 + w)^2`, which keeps
 //! the energy. Surrounding light: the irradiance of the hemisphere of sky and ground for the
 //! Lambert term, and for the mirror term that of the mirrored direction over pi, times Karis'
 //! fit of the split sum ("Physically based shading on mobile", 2014) with `(1 - n.v)^6` for its
@@ -209,11 +210,12 @@ impl Reflector {
         let halfway2 = (s(2.0) + l_dot_v + l_dot_v).max(s(1e-4));
         let n_dot_sum = cosine + self.n_dot_v;
         let a2 = self.a * self.a;
-        let lobe = n_dot_sum * n_dot_sum * (a2 - F32x8::ONE) + halfway2;
+        // A normal that leans away from the viewer must not push n.h over 1, to the lobe's pole.
+        let lobe = (n_dot_sum * n_dot_sum).min(halfway2) * (a2 - F32x8::ONE) + halfway2;
         let visibility = (n_dot_l + self.n_dot_v) * self.a
             + s(2.0) * n_dot_l * self.n_dot_v * (F32x8::ONE - self.a);
         let mirror =
-            a2 * s(0.5 / PI) * halfway2 * halfway2 / (lobe * lobe * visibility).max(s(1e-7));
+            a2 * s(0.5 / PI) * halfway2 * halfway2 / (lobe * lobe * visibility).max(s(1e-30));
         let grazing = (F32x8::ONE - halfway2.sqrt() * s(0.5)).max(F32x8::ZERO);
         let grazing2 = grazing * grazing;
         let fresnel = self.f0.mix(Vec3x8::splat([1.0; 3]), grazing2 * grazing2 * grazing);

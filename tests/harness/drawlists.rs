@@ -1,0 +1,184 @@
+//! Draw lists for tests of an engine, built from the ground up.
+
+use std::sync::Arc;
+
+use figurant_core::draw::DrawList;
+use figurant_core::draw::abi::{Draw, DrawObject, Lights, Material, View};
+use figurant_core::library::mesh::Mesh;
+use glam::{DAffine3, DMat3, DQuat, DVec3};
+
+use crate::meshes::{self, Dice};
+
+/// A transform as the draw list holds it.
+pub fn rows(m: &DAffine3) -> [[f32; 4]; 3] {
+    let (r, t) = (m.matrix3, m.translation);
+    std::array::from_fn(|i| {
+        [r.col(0)[i] as f32, r.col(1)[i] as f32, r.col(2)[i] as f32, t[i] as f32]
+    })
+}
+
+/// A picture with square pixels and its principal point in the middle, looking along world -Z.
+pub fn view(width: u32, height: u32, focal_px: f32) -> View {
+    View {
+        width,
+        height,
+        fx: focal_px,
+        fy: focal_px,
+        cx: width as f32 * 0.5,
+        cy: height as f32 * 0.5,
+        near_m: 0.1,
+        pad: 0,
+        view_from_world: rows(&DAffine3::IDENTITY),
+    }
+}
+
+/// Nothing yet, seen through a view, with a neutral light.
+pub fn empty(view: View, samples: u32) -> DrawList {
+    DrawList {
+        view,
+        exposure: 1.0,
+        shadow_map_size: 1024,
+        samples,
+        lights: Lights { sky_lux: [2.0; 3], ground_lux: [1.0; 3], ..Lights::default() },
+        ..DrawList::default()
+    }
+}
+
+/// Adds an object of one draw; returns its index.
+pub fn add(
+    list: &mut DrawList,
+    mesh: Mesh,
+    view_from_model: DAffine3,
+    material: Material,
+) -> usize {
+    let object = list.objects.len();
+    list.draws.push(Draw {
+        object: object as u32,
+        triangles: 0..mesh.triangles.len() as u32,
+        material: list.materials.len() as u32,
+        double_sided: false,
+    });
+    list.materials.push(material);
+    list.objects.push(DrawObject {
+        mesh: Arc::new(mesh),
+        view_from_model: rows(&view_from_model),
+        palette: 0..0,
+        in_view: true,
+        casts_shadow: true,
+        smooth: true,
+    });
+    object
+}
+
+/// Adds a skinned object whose joints stand at the given transforms.
+pub fn add_skinned(
+    list: &mut DrawList,
+    mesh: Mesh,
+    joints: &[DAffine3],
+    material: Material,
+) -> usize {
+    let first = list.palette.len() as u32;
+    list.palette.extend(joints.iter().map(rows));
+    let object = add(list, mesh, DAffine3::IDENTITY, material);
+    list.objects[object].palette = first..list.palette.len() as u32;
+    object
+}
+
+/// Scale, then a random rotation, then a position.
+pub fn tumbled(dice: &mut Dice, scale: f64, position: DVec3) -> DAffine3 {
+    let rotation = DQuat::from_axis_angle(dice.direction(), dice.range(0.0, 6.0));
+    DAffine3::from_scale_rotation_translation(DVec3::splat(scale), rotation, position)
+}
+
+/// A scene made of everything that is hard for a rasteriser: skinned bodies, uneven and mirrored
+/// scale, walls larger than the picture, floors under the camera, surfaces through the near plane,
+/// specks smaller than a pixel, and triangle soup.
+pub fn mixed(seed: u64, samples: u32) -> DrawList {
+    let mut dice = Dice::new(seed);
+    let side = |dice: &mut Dice| 64 + dice.below(if samples == 1 { 65 } else { 17 }) as u32;
+    let (width, height) = (side(&mut dice), side(&mut dice));
+    let mut view = view(width, height, dice.range(0.6, 1.6) as f32 * width as f32);
+    view.fy *= dice.range(0.9, 1.1) as f32;
+    view.cx += dice.range(-9.0, 9.0) as f32;
+    view.cy += dice.range(-9.0, 9.0) as f32;
+    let mut list = empty(view, samples);
+    let material = |dice: &mut Dice| Material {
+        base_color: [
+            dice.range(0.1, 0.9) as f32,
+            dice.range(0.1, 0.9) as f32,
+            dice.range(0.1, 0.9) as f32,
+        ],
+        roughness: dice.range(0.3, 1.0) as f32,
+        metallic: if dice.unit() < 0.3 { dice.unit() as f32 } else { 0.0 },
+        ..Material::default()
+    };
+    for _ in 0..3 + dice.below(5) {
+        let distance = dice.range(0.4, 9.0);
+        let offset = dice.vector() * DVec3::new(0.6, 0.6, 0.0) * distance;
+        let place = offset - DVec3::Z * distance;
+        let m = material(&mut dice);
+        match dice.below(9) {
+            0 => {
+                let joints: Vec<DAffine3> = (0..6)
+                    .map(|_| {
+                        let turn = DQuat::from_axis_angle(dice.direction(), dice.range(-0.4, 0.4));
+                        DAffine3::from_scale_rotation_translation(DVec3::splat(0.5), turn, place)
+                    })
+                    .collect();
+                let mesh = meshes::skinned_body(&mut dice, 14, 16, 6);
+                add_skinned(&mut list, mesh, &joints, m);
+            }
+            1 => {
+                let uneven = DAffine3::from_mat3(DMat3::from_diagonal(
+                    DVec3::new(-0.3, 0.6, 0.2) * dice.range(0.5, 2.0),
+                ));
+                let turn = tumbled(&mut dice, 1.0, place);
+                add(&mut list, meshes::sphere(16, 10), turn * uneven, m);
+            }
+            2 => {
+                let turn = tumbled(&mut dice, 0.4, place);
+                let torus = add(&mut list, meshes::torus(18, 9, 0.35), turn, m);
+                list.objects[torus].smooth = false;
+            }
+            3 => {
+                let turn = tumbled(&mut dice, 0.4, place);
+                add(&mut list, meshes::cuboid(), turn, m);
+            }
+            4 => {
+                let turn = tumbled(&mut dice, 0.7, place);
+                let mesh = meshes::soup(&mut dice, 60, 0.5);
+                add(&mut list, mesh, turn, m);
+                list.draws.last_mut().expect("an object was added").double_sided = true;
+            }
+            5 => {
+                // Specks, most of which miss every sample.
+                let turn = tumbled(&mut dice, distance * 0.3, place);
+                let mesh = meshes::soup(&mut dice, 200, 0.01);
+                add(&mut list, mesh, turn, m);
+                list.draws.last_mut().expect("an object was added").double_sided = true;
+            }
+            6 => {
+                let floor = DAffine3::from_translation(DVec3::new(0.0, -1.0, 0.0))
+                    * DAffine3::from_rotation_x(-1.57)
+                    * DAffine3::from_scale(DVec3::splat(dice.range(20.0, 3000.0)));
+                add(&mut list, meshes::square(), floor, m);
+            }
+            7 => {
+                // Through the near plane and past the camera.
+                let place = dice.vector() * 0.7;
+                let turn = tumbled(&mut dice, 1.5, place);
+                let mesh = meshes::soup(&mut dice, 30, 2.0);
+                add(&mut list, mesh, turn, m);
+                list.draws.last_mut().expect("an object was added").double_sided = true;
+            }
+            _ => {
+                let wall = tumbled(&mut dice, 1.0, DVec3::ZERO).matrix3;
+                let leaning = DMat3::IDENTITY + wall * 0.3;
+                let wall =
+                    DAffine3::from_mat3_translation(leaning * 40.0, DVec3::new(0.0, 0.0, -12.0));
+                add(&mut list, meshes::square(), wall, m);
+            }
+        }
+    }
+    list
+}
