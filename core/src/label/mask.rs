@@ -13,6 +13,8 @@ pub struct Owners {
     person_of_id: Vec<u16>,
     /// By object id: instance id, or 0.
     instance_of_id: Vec<u16>,
+    /// How many people were drawn or left out.
+    people: usize,
 }
 
 /// Extent of the pixels of one person.
@@ -38,7 +40,7 @@ impl Owners {
                 instance_of_id[object as usize + 1] = person.instance;
             }
         }
-        Self { person_of_id, instance_of_id }
+        Self { person_of_id, instance_of_id, people: drawn.people.len() }
     }
 
     /// Index in the drawn people of an object id's owner.
@@ -66,8 +68,7 @@ impl Owners {
 /// Extent of each drawn person's pixels, absent for who owns none.
 #[must_use]
 pub fn measure(object_ids: &[u16], width: u32, owners: &Owners) -> Vec<Option<Extent>> {
-    let people = owners.person_of_id.iter().copied().max().unwrap_or(0);
-    let mut extents = vec![None; usize::from(people)];
+    let mut extents = vec![None; owners.people];
     for (y, row) in object_ids.chunks_exact(width.max(1) as usize).enumerate() {
         let mut x = 0;
         for run in row.chunk_by(|a, b| a == b) {
@@ -114,7 +115,7 @@ mod tests {
     use super::*;
 
     fn owners() -> Owners {
-        Owners { person_of_id: vec![0, 1, 0, 2], instance_of_id: vec![0, 5, 0, 9] }
+        Owners { person_of_id: vec![0, 1, 0, 2], instance_of_id: vec![0, 5, 0, 9], people: 3 }
     }
 
     #[test]
@@ -127,7 +128,8 @@ mod tests {
 
     #[test]
     fn who_owns_no_pixel_has_no_extent() {
-        assert_eq!(measure(&[0, 2, 3, 0], 2, &owners())[0], None);
+        let found = measure(&[0, 2, 3, 0], 2, &owners());
+        assert_eq!((found.len(), found[0], found[2]), (3, None, None));
     }
 
     #[test]
