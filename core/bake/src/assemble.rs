@@ -476,7 +476,7 @@ impl Contacts {
         let p = &source.positions;
         let body = source.vertices("body");
         let crown = body.iter().copied().filter(|&v| p[v].y > 0.838).collect();
-        let feet = body.iter().copied().filter(|&v| p[v].y < -0.805).collect();
+        let feet = body.iter().copied().filter(|&v| p[v].y < -0.8115).collect();
         let shell = source.vertices("helper-tights");
         let tris = triangles(source.quads("helper-tights"));
         let n = normals(p, tris.iter().map(|t| t.map(|c| c.0)));

@@ -24,11 +24,11 @@ const CURTAIN_COLUMNS: usize = 45;
 /// `sharp` draws the sideburn in front of the ear, the other one passes over it.
 fn hairline_y(azimuth_deg: f64, sharp: bool) -> f64 {
     const SOFT: [(f64, f64); 15] = [
-        (0.0, 0.803),
-        (12.0, 0.805),
-        (26.0, 0.803),
-        (36.0, 0.794),
-        (46.0, 0.780),
+        (0.0, 0.796),
+        (12.0, 0.798),
+        (26.0, 0.797),
+        (36.0, 0.790),
+        (46.0, 0.778),
         (56.0, 0.764),
         (64.0, 0.751),
         (72.0, 0.746),
@@ -41,8 +41,8 @@ fn hairline_y(azimuth_deg: f64, sharp: bool) -> f64 {
         (180.0, 0.652),
     ];
     const SHARP: [(f64, f64); 9] = [
-        (0.0, 0.808),
-        (58.0, 0.764),
+        (0.0, 0.796),
+        (58.0, 0.760),
         (63.0, 0.748),
         (67.0, 0.722),
         (70.0, 0.710),
@@ -234,8 +234,8 @@ pub fn curtain(source: &Source, rig: &Rig) -> Draft {
         // The free edges are thin.
         let body = smoothstep(0.0, 14.0, folded - FRONT_DEG);
         let strand = 0.0022 * (folded * 0.42).sin() + 0.0014 * (folded * 0.97 + 1.0).sin();
-        let top = 0.772 - 0.010 * (1.0 - body);
-        let bottom = 0.545 + 0.040 * (1.0 - smoothstep(75.0, 150.0, folded)) + 2.0 * strand;
+        let top = 0.780 - 0.010 * (1.0 - body);
+        let bottom = 0.545 + 0.040 * (1.0 - smoothstep(75.0, 150.0, folded)) + 1.2 * strand;
         let mut length = 0.0;
         let mut last = None;
         for (r, &(down, inset)) in ROWS.iter().enumerate() {
@@ -270,8 +270,8 @@ fn curtain_radius(head: &Head<'_>, azimuth: f64, folded: f64, y: f64) -> f64 {
         let hits = head.hits(DVec3::new(0.0, y, CENTER.z), DVec3::new(a.sin(), 0.0, a.cos()));
         hits.last().map_or(0.07, |h| h.0)
     };
-    let hang = [0.70, 0.715, 0.73, 0.75].map(skin).into_iter().fold(0.0, f64::max) + 0.008;
-    let close = skin(y.clamp(0.74, 0.78)) + 0.013;
+    let hang = [0.70, 0.715, 0.73, 0.75].map(skin).into_iter().fold(0.0, f64::max) + 0.012;
+    let close = skin(y.clamp(0.74, 0.79)) + 0.010 + 0.005 * smoothstep(0.775, 0.750, y);
     let head_part = smoothstep(0.775, 0.735, y);
     let falling = close + (hang.max(close) - close) * head_part;
     let tuck = 0.010 * smoothstep(0.70, 0.62, y) * smoothstep(150.0, 90.0, folded);

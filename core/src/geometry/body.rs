@@ -228,7 +228,9 @@ fn reach(figure: &Figure, needed: &Needed, heads: &[DVec3; JOINT_COUNT]) -> [f64
     for (j, reach) in out.iter_mut().enumerate() {
         let name = figure.joint_names()[j].as_str();
         let hair = matches!(name, "Head" | "Neck" | "Spine2");
-        *reach += COVER_M + if hair { HAIR_M } else { 0.0 };
+        // The margin is the template's; half as much again covers other proportions.
+        let margin = figure.reach_margin_m()[j] * 1.5;
+        *reach += margin + COVER_M + if hair { HAIR_M } else { 0.0 };
     }
     out
 }
@@ -311,7 +313,7 @@ mod tests {
                 .map(|t| at(t[0]).dot(at(t[1]).cross(at(t[2]))) / 6.0 * 1000.0)
                 .sum();
             let ratio = rest.mass_kg / (litres * 0.98);
-            assert!((ratio - 1.0).abs() < 0.012, "{body:?} {ratio}");
+            assert!((ratio - 1.0).abs() < 0.03, "{body:?} {ratio}");
         }
     }
 
@@ -373,7 +375,12 @@ mod tests {
                 for (&j, _) in s.joints.iter().zip(&s.weights).filter(|w| *w.1 > 0) {
                     let j = usize::from(j);
                     let d = (DVec3::from_array(p.map(f64::from)) - rest.heads_m[j]).length();
-                    assert!(d <= rest.reach_m[j] - 0.02, "{d} {}", rest.reach_m[j]);
+                    assert!(
+                        d <= rest.reach_m[j] - 0.02,
+                        "{} {d} {}",
+                        figure.joint_names()[j],
+                        rest.reach_m[j]
+                    );
                 }
             }
         }

@@ -4,6 +4,7 @@
 //! everything, skin weights included. Hems get a small rim turned inwards, so that cloth has a
 //! thickness. What is cut where is decided by the callers.
 
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::ops::Range;
 
@@ -25,6 +26,86 @@ pub(super) struct Surface<'a> {
     pub normals: &'a [Vec3],
     /// By vertex.
     pub skin: &'a [SkinVertex],
+}
+
+/// A surface with its own vertices, and a field over them.
+pub(super) struct Refined<'a> {
+    render: Vec<u16>,
+    uvs: Vec<f32>,
+    triangles: Vec<u16>,
+    positions: Vec<Vec3>,
+    normals: Vec<Vec3>,
+    skin: Vec<SkinVertex>,
+    field: Cow<'a, [f32]>,
+}
+
+impl<'a> Refined<'a> {
+    /// Splits every triangle that the field's zero crosses into four, so that the cut follows a
+    /// curved line. New vertices lie on the old edges, where `between` gives the field; whole
+    /// triangles that share such an edge fit on without a gap.
+    pub fn new(s: &Surface<'_>, field: &'a [f32], between: impl Fn(usize, usize) -> f32) -> Self {
+        let mut out = Self {
+            render: s.render.to_vec(),
+            uvs: s.uvs.to_vec(),
+            triangles: Vec::with_capacity(s.triangles.len() + 1024),
+            positions: s.positions.to_vec(),
+            normals: s.normals.to_vec(),
+            skin: s.skin.to_vec(),
+            field: Cow::Borrowed(field),
+        };
+        let mut vertices = BTreeMap::<CutKey, u16>::new();
+        let mut corners = BTreeMap::<CutKey, u16>::new();
+        for t in s.triangles.chunks_exact(3) {
+            let r = [t[0], t[1], t[2]];
+            let v = r.map(|r| s.render[usize::from(r)]);
+            let inside = v.map(|v| field[usize::from(v)] >= 0.0);
+            if inside[0] == inside[1] && inside[1] == inside[2] {
+                out.triangles.extend(r);
+                continue;
+            }
+            let m: [u16; 3] = std::array::from_fn(|i| {
+                let j = (i + 1) % 3;
+                let (a, b) = (r[i].min(r[j]), r[i].max(r[j]));
+                *corners.entry((a, b)).or_insert_with(|| {
+                    let key = (v[i].min(v[j]), v[i].max(v[j]));
+                    let vertex = *vertices.entry(key).or_insert_with(|| out.split(key, &between));
+                    out.render.push(vertex);
+                    for k in 0..2 {
+                        let (x, y) = (2 * usize::from(a) + k, 2 * usize::from(b) + k);
+                        out.uvs.push((s.uvs[x] + s.uvs[y]) * 0.5);
+                    }
+                    out.render.len() as u16 - 1
+                })
+            });
+            out.triangles
+                .extend([r[0], m[0], m[2], m[0], r[1], m[1], m[2], m[1], r[2], m[0], m[1], m[2]]);
+        }
+        out
+    }
+
+    fn split(&mut self, (a, b): CutKey, between: &impl Fn(usize, usize) -> f32) -> u16 {
+        let (i, j) = (usize::from(a), usize::from(b));
+        self.positions.push((self.positions[i] + self.positions[j]) * 0.5);
+        self.normals.push((self.normals[i] + self.normals[j]).normalize_or(Vec3::Y));
+        self.skin.push(mix_skin(self.skin[i], self.skin[j], 0.5));
+        self.field.to_mut().push(between(i, j));
+        self.positions.len() as u16 - 1
+    }
+
+    pub fn field(&self) -> &[f32] {
+        &self.field
+    }
+
+    pub fn surface(&self) -> Surface<'_> {
+        Surface {
+            render: &self.render,
+            uvs: &self.uvs,
+            triangles: &self.triangles,
+            positions: &self.positions,
+            normals: &self.normals,
+            skin: &self.skin,
+        }
+    }
 }
 
 /// Smooth unit normals of vertices, weighted by area; +Y where no triangle is.

@@ -12,9 +12,9 @@ use crate::library::figure::{Figure, GroupId};
 use crate::scene::{BottomKind, Outfit};
 
 /// Lower edge of tops on the template, metres above its origin.
-const HEM_Y: f32 = -0.015;
+const HEM_Y: f32 = 0.012;
 /// Upper edge of trousers, under the top.
-const WAIST_Y: f32 = 0.045;
+const WAIST_Y: f32 = 0.070;
 /// How far shoes stand off the foot.
 const SHOE_M: f32 = 0.009;
 /// Cloth that lies over another keeps this distance.
@@ -55,12 +55,14 @@ pub(super) struct Cuts {
 impl Cuts {
     pub fn new(outfit: &Outfit) -> Self {
         let trousers = outfit.bottom.kind == BottomKind::Trousers;
-        let (least, most) = if trousers { (0.5, 1.04) } else { (0.18, 0.62) };
+        let (least, most) = if trousers { (0.5, 1.0) } else { (0.18, 0.62) };
+        let length = (outfit.bottom.length as f32).clamp(least, most);
         Self {
             sleeve: (outfit.top.sleeve as f32).clamp(0.12, 0.97),
             neckline: (outfit.top.neckline as f32).clamp(0.0, 1.0),
             top_m: (outfit.top.looseness_m as f32).clamp(0.0, 0.06),
-            leg_end: (outfit.bottom.length as f32).clamp(least, most),
+            // Trousers that reach the ankle rest on the shoes.
+            leg_end: length + 0.03 * step(0.9, 1.0, length),
             bottom_m: (outfit.bottom.looseness_m as f32).clamp(0.0, 0.05),
             trousers,
         }
@@ -75,22 +77,26 @@ impl Cuts {
         Fields {
             top: hem.min(sleeve).min(self.neck(p)),
             bottom: (WAIST_Y - p.y - on_arm).min(cuff).min(p.y + 0.775),
-            shoes: -0.742 - 0.25 * p.z - p.y,
+            shoes: -0.732 - 0.15 * p.z.clamp(-0.05, 0.07) - p.y,
         }
     }
 
-    /// Distance from the neckline: outside an ellipsoid at the root of the neck that goes on
-    /// upwards as a cylinder; deeper necklines reach farther down in front.
+    /// About the distance from the neckline, a closed curve round the neck that dips in front.
+    /// Outwards and downwards count alike, so that the cut crosses the skin at a right angle both
+    /// on the neck's steep sides and on the flat shoulders.
     fn neck(&self, p: Vec3) -> f32 {
         let t = self.neckline;
-        let q = p - Vec3::new(0.0, 0.562, 0.020);
-        let front = q.z >= 0.0;
-        let x = q.x / (0.068 + 0.022 * t);
-        let y = q.y.min(0.0) / (0.050 + if front { 0.080 * t } else { 0.0 });
-        let z = q.z / if front { 0.084 + 0.080 * t } else { 0.070 + 0.006 * t };
-        let k = (x * x + y * y + z * z).sqrt();
-        // To first order a distance: the value over the length of its gradient.
-        (k - 1.0) * 0.062
+        let (x, z) = (p.x, p.z - 0.020);
+        let radius = (x * x + z * z).sqrt();
+        let ahead = z / radius.max(1e-4);
+        let (side_r, side_y) = (0.066 + 0.020 * t, 0.573 - 0.004 * t);
+        let (r, y) =
+            if ahead > 0.0 { (0.070 + 0.042 * t, 0.538 - 0.085 * t) } else { (0.064, 0.556) };
+        // Flat at the front and at the back, so that deep necklines are round.
+        let across = 1.0 - ahead * ahead;
+        let w = 1.0 - across * across;
+        let (r, y) = (side_r + (r - side_r) * w, side_y + (y - side_y) * w);
+        0.6 * (radius - r) + 0.8 * (y - p.y)
     }
 }
 
@@ -100,17 +106,32 @@ pub(super) fn fields(figure: &Figure, cuts: &Cuts, id: GroupId, count: u32) -> V
 }
 
 fn places(figure: &Figure, id: GroupId, count: u32) -> impl Iterator<Item = Place> + '_ {
+    figure.vertices(id, count).map(|v| place(figure, v))
+}
+
+fn place(figure: &Figure, v: usize) -> Place {
     let (d, t) = (figure.data(), figure.template());
-    figure.vertices(id, count).map(move |v| Place {
+    Place {
         p: Vec3::new(t.x[v], t.y[v], t.z[v]),
         arm: f32::from(d.arm[v]) * LIMB_UNIT,
         leg: f32::from(d.leg[v]) * LIMB_UNIT,
+    }
+}
+
+/// The fields half way between two vertices of the shell.
+pub(super) fn fields_between(figure: &Figure, cuts: &Cuts, a: usize, b: usize) -> Fields {
+    let [a, b] = [a, b].map(|i| place(figure, figure.group(GroupId::Shell).first as usize + i));
+    cuts.fields(Place {
+        p: (a.p + b.p) * 0.5,
+        arm: (a.arm + b.arm) * 0.5,
+        leg: (a.leg + b.leg) * 0.5,
     })
 }
 
 /// Which of the first `count` skin vertices can never be seen.
 pub(super) fn hidden(figure: &Figure, cuts: &Cuts, fields: &[Fields]) -> Vec<bool> {
-    let (top, bottom) = (HIDDEN_M + 0.7 * cuts.top_m, HIDDEN_M + 0.7 * cuts.bottom_m);
+    // Wide openings can be looked into.
+    let (top, bottom) = (HIDDEN_M + 2.0 * cuts.top_m, HIDDEN_M + 2.5 * cuts.bottom_m);
     fields
         .iter()
         .zip(&figure.data().covered)
@@ -191,7 +212,7 @@ pub(super) fn layers(
     };
     part_legs(&places, &mut layers.bottom);
     part_legs(&places, &mut layers.top);
-    flatten_soles(figure, &places, &mut layers.shoes);
+    flatten_soles(figure, &mut layers.shoes);
     layers.soles = layers
         .shoes
         .iter()
@@ -230,16 +251,18 @@ fn part_legs(places: &[Place], layer: &mut [Vec3]) {
     }
 }
 
-/// The lowest parts of the shoes form a plane on the ground.
-fn flatten_soles(figure: &Figure, places: &[Place], shoes: &mut [Vec3]) {
+/// The lowest parts of the shoes form a plane on the ground, with a crisp edge.
+fn flatten_soles(figure: &Figure, shoes: &mut [Vec3]) {
+    const FLAT_M: f32 = 0.010;
+    const BLEND_M: f32 = 0.034;
+    for q in shoes.iter_mut().filter(|q| q.y < BLEND_M) {
+        q.y = ((q.y - FLAT_M) * (BLEND_M / (BLEND_M - FLAT_M))).max(0.0);
+    }
     let first = figure.group(GroupId::Shell).first as usize;
     for &v in &figure.data().sole {
         if let Some(q) = shoes.get_mut(usize::from(v) - first) {
             q.y = 0.0;
         }
-    }
-    for (q, _) in shoes.iter_mut().zip(places) {
-        q.y = q.y.max(0.0);
     }
 }
 

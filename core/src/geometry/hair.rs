@@ -7,6 +7,7 @@
 use glam::Vec3;
 
 use super::cut::smooth_normals;
+use super::garment::step;
 use crate::library::figure::{Figure, GroupId};
 use crate::scene::HairStyle;
 
@@ -51,8 +52,14 @@ pub(super) fn cap(
             let left = 1.0 - (figure.data().hair_depth[i] / taper).min(1.0);
             let rise = (1.0 - left * left).max(0.0).sqrt();
             let top = side + (1.0 - side) * n.y.max(0.0);
+            // Under the curtain the cap lies close.
+            let free = if has_curtain(style) {
+                0.2 + 0.8 * step(0.735, 0.778, template.y[v])
+            } else {
+                1.0
+            };
             let lump = lump(Vec3::new(template.x[v], template.y[v], template.z[v]));
-            *p + *n * (head_scale * (thick * rise * top * (1.0 + 0.14 * lump) - SUNK_M))
+            *p + *n * (head_scale * (thick * free * rise * top * (1.0 + 0.14 * lump) - SUNK_M))
         })
         .collect();
     let normals = smooth_normals(&out, &group.render, triangles);

@@ -10,7 +10,7 @@ use std::ops::Range;
 use glam::Vec3;
 
 use super::body::{RestBody, SOLE_M};
-use super::cut::{Builder, Rim, Surface as Cloth, smooth_normals};
+use super::cut::{Builder, Refined, Rim, Surface as Cloth, smooth_normals};
 use super::garment::{self, Cuts, Fields};
 use super::{hair, phenotype};
 use crate::library::figure::{Figure, GroupId, LOD_COUNT};
@@ -257,29 +257,41 @@ fn add_clothes(
     let fields = garment::fields(figure, cuts, GroupId::Shell, count);
     let layers = garment::layers(figure, cuts, &fields, lod, &shell.positions, &shell.normals);
     let rim = (lod < 3).then_some(Rim { thickness_m: 0.0035, round: lod < 2 });
-    let field = |f: fn(&Fields) -> f32| -> Vec<f32> { fields.iter().map(f).collect() };
-    let outfit = &person.outfit;
-
-    let cut = |out: &mut Parts, layer: &[Vec3], field: &[f32], rim| {
+    // Fine levels follow the curve of a hem inside the shell's triangles.
+    let cut = |out: &mut Parts, layer: &[Vec3], rim, f: fn(&Fields) -> f32| {
+        let field: Vec<f32> = fields.iter().map(f).collect();
         let normals = shell.normals_of(layer);
-        out.builder.add_cut(&shell.with(layer, &normals), field, rim)
+        let whole = shell.with(layer, &normals);
+        if lod > 1 {
+            return out.builder.add_cut(&whole, &field, rim);
+        }
+        let between = |a, b| f(&garment::fields_between(figure, cuts, a, b));
+        let fine = Refined::new(&whole, &field, between);
+        out.builder.add_cut(&fine.surface(), fine.field(), rim)
     };
-    let range = cut(out, &layers.bottom, &field(|f| f.bottom), rim);
-    let b = &outfit.bottom;
-    out.add(PartKind::Bottom, range, true, cloth(b.color, b.texture.as_ref(), b.hue_offset_deg));
-    let range = cut(out, &layers.top, &field(|f| f.top), rim);
-    let t = &outfit.top;
-    out.add(PartKind::Top, range, true, cloth(t.color, t.texture.as_ref(), t.hue_offset_deg));
+    let (top, bottom) = (&person.outfit.top, &person.outfit.bottom);
+    let range = cut(out, &layers.bottom, rim, |f| f.bottom);
+    let surface = cloth(bottom.color, bottom.texture.as_ref(), bottom.hue_offset_deg);
+    out.add(PartKind::Bottom, range, true, surface);
+    let range = cut(out, &layers.top, rim, |f| f.top);
+    let surface = cloth(top.color, top.texture.as_ref(), top.hue_offset_deg);
+    out.add(PartKind::Top, range, true, surface);
 
     // Shoes and soles meet a little above the ground.
     let edge_m = SOLE_M + 0.006;
+    let shoe = person.outfit.shoes.color;
     let split = |sign: f32| -> Vec<f32> {
-        fields.iter().zip(&layers.shoes).map(|(f, p)| f.shoes.min(sign * (p.y - edge_m))).collect()
+        let edge = layers.shoes.iter().map(|p| sign * (p.y - edge_m));
+        fields.iter().zip(edge).map(|(f, e)| f.shoes.min(e)).collect()
     };
-    let range = cut(out, &layers.shoes, &split(1.0), rim);
-    out.add(PartKind::Shoes, range, true, plain(narrow(outfit.shoes.color), 0.45));
-    let range = cut(out, &layers.soles, &split(-1.0), None);
-    out.add(PartKind::Soles, range, true, plain(sole_color(outfit.shoes.color), 0.8));
+    for (kind, layer, sign, rim, color, roughness) in [
+        (PartKind::Shoes, &layers.shoes, 1.0, rim, narrow(shoe), 0.45),
+        (PartKind::Soles, &layers.soles, -1.0, None, sole_color(shoe), 0.8),
+    ] {
+        let normals = shell.normals_of(layer);
+        let range = out.builder.add_cut(&shell.with(layer, &normals), &split(sign), rim);
+        out.add(kind, range, true, plain(color, roughness));
+    }
 }
 
 /// Sets the sphere round all vertices: the middle of their box and the farthest of them.
@@ -356,7 +368,7 @@ fn eye_surface(look: &Look) -> Surface {
             layer(narrow(look.iris_color), 0.12),
             layer([0.008, 0.007, 0.007], 0.10),
             layer(tinted(white, [0.82, 0.66, 0.62]), 0.20),
-            [0.0; 4],
+            layer([0.9, 0.92, 0.95], 0.10),
         ],
         ..plain(white, 0.12)
     }
@@ -381,8 +393,7 @@ fn cloth(color: [f64; 3], texture: Option<&String>, hue_offset_deg: f64) -> Surf
     }
 }
 
-/// Rubber: white under dark shoes now and then would need a value of its own, so soles follow the
-/// shoe's colour, darker if it is light and lighter if it is dark.
+/// Rubber in the shoe's colour, darker if that is light and lighter if it is dark.
 fn sole_color(shoe: [f64; 3]) -> [f32; 3] {
     let shoe = narrow(shoe);
     let light = 0.2126 * shoe[0] + 0.7152 * shoe[1] + 0.0722 * shoe[2];

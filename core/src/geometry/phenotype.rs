@@ -234,11 +234,11 @@ pub(crate) mod tests {
     }
 
     #[test]
-    fn an_adult_of_mixed_ancestry_needs_46_targets() {
+    fn an_adult_of_mixed_ancestry_needs_46_targets_two_of_them_empty() {
         let figure = Figure::built_in().unwrap();
         let body = Body { muscle: 0.4, weight: 0.7, ..average(Sex::Male) };
         let rows = weighted_rows(&figure, &keyword_weights(&body, 0.75, 0.5));
-        assert_eq!(rows.len(), 46);
+        assert_eq!(rows.len(), 46 - 2, "the two empty ones are not in the file");
     }
 
     #[test]

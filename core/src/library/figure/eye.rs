@@ -9,12 +9,12 @@ use crate::library::texture::Texture;
 const LOG2_SIZE: u32 = 8;
 /// Angles from the axis in degrees, after the usual proportions of a human eye (visible iris
 /// 11.7 mm across on a ball of 24 mm, pupil 4 mm).
-const IRIS_DEG: f32 = 29.5;
+const IRIS_DEG: f32 = 28.0;
 const PUPIL_DEG: f32 = 12.0;
 const RIM_DEG: f32 = 3.2;
 const WHITE_DEG: f32 = 62.0;
 
-/// Red iris, green pupil and limbal ring, blue the outer white.
+/// Red iris, green pupil and limbal ring, blue the outer white, alpha a glint.
 pub(super) fn mask() -> Texture {
     let size = 1u32 << LOG2_SIZE;
     let to_unit = |i: u32| (i as f32 + 0.5) / size as f32 * 2.0 - 1.0;
@@ -28,8 +28,14 @@ pub(super) fn mask() -> Texture {
             let rim = step(IRIS_DEG - RIM_DEG - 2.0, IRIS_DEG - 0.5, deg)
                 * (1.0 - step(IRIS_DEG - 0.5, IRIS_DEG + 2.0, deg));
             let white = step(IRIS_DEG + 2.0, WHITE_DEG, deg);
+            // The glint of a window, above the pupil and to the person's left.
+            let glint_deg = ((u - 0.055).powi(2) + (v + 0.065).powi(2)).sqrt() * 180.0;
+            let glint = 1.0 - step(2.2, 4.6, glint_deg);
             let byte = |v: f32| (v.clamp(0.0, 1.0) * 255.0 + 0.5) as u32;
-            byte(iris) | byte(pupil.max(rim * 0.75)) << 8 | byte(white * 0.6) << 16
+            byte(iris)
+                | byte(pupil.max(rim * 0.55)) << 8
+                | byte(white * 0.6) << 16
+                | byte(glint * 0.8) << 24
         })
         .collect();
     with_mips(LOG2_SIZE, texels)

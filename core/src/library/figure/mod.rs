@@ -15,6 +15,8 @@ mod stream;
 pub use data::{FigureData, Group, GroupId, LOD_COUNT, Lod};
 use data::{KEYPOINT_VERTICES, MAX_FACTORS};
 
+use glam::DVec3;
+
 use crate::library::mesh::SkinVertex;
 use crate::library::texture::{Encoding, Texture};
 
@@ -55,6 +57,7 @@ pub struct Figure {
     skin: Vec<SkinVertex>,
     skin_mask: Arc<Texture>,
     eye_mask: Arc<Texture>,
+    reach_margin_m: [f64; JOINT_COUNT],
 }
 
 /// A macro target's row: the target and the keywords whose weights multiply.
@@ -110,7 +113,7 @@ impl Figure {
         if data.joint_names.len() != JOINT_COUNT {
             return Err(FigureError::Malformed { what: "joint names" });
         }
-        let skin = data
+        let skin: Vec<SkinVertex> = data
             .skin_joints
             .chunks_exact(4)
             .zip(data.skin_weights.chunks_exact(4))
@@ -120,7 +123,8 @@ impl Figure {
             })
             .collect();
         let skin_mask = Arc::new(mask_texture(&data.mask));
-        Ok(Self { data, skin, skin_mask, eye_mask: Arc::new(eye::mask()) })
+        let reach_margin_m = reach_margins_m(&data, &skin);
+        Ok(Self { data, skin, skin_mask, eye_mask: Arc::new(eye::mask()), reach_margin_m })
     }
 
     /// The raw tables.
@@ -239,17 +243,50 @@ impl Figure {
             .max(self.group(GroupId::Shell).lods[lod].error_m)
     }
 
+    /// How much farther from each joint's head the vertices of all groups reach that the joint
+    /// moves than those of the skin's level [`VOLUME_LOD`], metres on the template.
+    #[must_use]
+    pub const fn reach_margin_m(&self) -> &[f64; JOINT_COUNT] {
+        &self.reach_margin_m
+    }
+
     /// Masks over the skin: red lips and mouth, green brows, blue flushed places, alpha scalp.
     #[must_use]
     pub const fn skin_mask(&self) -> &Arc<Texture> {
         &self.skin_mask
     }
 
-    /// Masks over an eyeball: red iris, green pupil and its dark rim, blue the veined outer white.
+    /// Masks over an eyeball: red iris, green pupil and its dark rim, blue the veined outer white, alpha a
+    /// glint.
     #[must_use]
     pub const fn eye_mask(&self) -> &Arc<Texture> {
         &self.eye_mask
     }
+}
+
+fn reach_margins_m(data: &FigureData, skin: &[SkinVertex]) -> [f64; JOINT_COUNT] {
+    let t = Planes::of(&data.positions);
+    let at = |v: usize| DVec3::new(f64::from(t.x[v]), f64::from(t.y[v]), f64::from(t.z[v]));
+    let head = |j: usize| {
+        let cube = &data.joint_heads[8 * j..8 * j + 8];
+        cube.iter().map(|&v| at(usize::from(v))).sum::<DVec3>() / 8.0
+    };
+    let heads: [DVec3; JOINT_COUNT] = std::array::from_fn(head);
+    let reach = |vertices: Range<usize>| {
+        let mut out = [0.0_f64; JOINT_COUNT];
+        for v in vertices {
+            let s = &skin[v];
+            for (&j, _) in s.joints.iter().zip(&s.weights).filter(|w| *w.1 > 0) {
+                let j = usize::from(j);
+                out[j] = out[j].max((at(v) - heads[j]).length());
+            }
+        }
+        out
+    };
+    let coarse = data.groups[GroupId::Skin as usize].lods[VOLUME_LOD].vertices as usize;
+    let joints = data.groups[GroupId::Joints as usize].first as usize;
+    let (all, few) = (reach(0..joints), reach(0..coarse));
+    std::array::from_fn(|j| all[j] - few[j])
 }
 
 fn mask_texture(planar: &[u8]) -> Texture {
