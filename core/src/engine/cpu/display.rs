@@ -5,7 +5,7 @@
 
 use super::samples::TILE;
 use super::shade::TileColor;
-use super::simd::{F32x8, LANES, kernel};
+use super::simd::{F32x8, I32x8, LANES, kernel};
 
 /// Exposed light to linear display light, 0..1.
 #[inline(always)]
@@ -31,6 +31,12 @@ fn srgb(x: F32x8) -> F32x8 {
     x.gt(s(0.003_130_8)).select(curve, x * s(12.92))
 }
 
+/// Linear display light to a byte of sRGB.
+#[inline(always)]
+fn byte(v: F32x8) -> I32x8 {
+    (srgb(v.clamp(0.0, 1.0)) * F32x8::splat(255.0)).clamp(0.0, 255.0).round_i32()
+}
+
 kernel! {
     /// Encodes a tile's colours: red, green and blue bytes of each pixel slot.
     fn encode(color: &TileColor, bytes: &mut [[u8; 3]; TILE * TILE]) = encode_body
@@ -40,12 +46,11 @@ kernel! {
 fn encode_body(color: &TileColor, bytes: &mut [[u8; 3]; TILE * TILE]) {
     for (from, bytes) in bytes.chunks_exact_mut(LANES).enumerate() {
         let from = from * LANES;
-        let channels = [0, 1, 2].map(|c| {
-            let v = F32x8::load(&color[c][from..from + LANES]).clamp(0.0, 1.0);
-            (srgb(v) * F32x8::splat(255.0)).clamp(0.0, 255.0).round_i32()
-        });
+        let red = byte(F32x8::load(&color[0][from..from + LANES]));
+        let green = byte(F32x8::load(&color[1][from..from + LANES]));
+        let blue = byte(F32x8::load(&color[2][from..from + LANES]));
         for (lane, bytes) in bytes.iter_mut().enumerate() {
-            *bytes = channels.map(|c| c.0[lane] as u8);
+            *bytes = [red.0[lane] as u8, green.0[lane] as u8, blue.0[lane] as u8];
         }
     }
 }

@@ -112,7 +112,8 @@ impl Projection {
     #[inline(always)]
     pub(super) fn project8(&self, p: Vec3x8, out: &mut [ScreenVertex]) {
         let out = &mut out[..LANES];
-        let [guard_x, guard_y] = self.size.map(|s| f64::from(s) + GUARD_PX);
+        let guard_x = f64::from(self.size[0]) + GUARD_PX;
+        let guard_y = f64::from(self.size[1]) + GUARD_PX;
         let (mut x, mut y, mut depth) = ([0; LANES], [0; LANES], [0.0; LANES]);
         let mut i = 0;
         while i < LANES {

@@ -47,7 +47,7 @@ fn raster_body<const S: usize, const IDS: bool, const SIDE: usize>(
     } else {
         ids
     };
-    let origin_px = tile.map(|t| (t as usize * SIDE) as i32);
+    let origin_px = [(tile[0] as usize * SIDE) as i32, (tile[1] as usize * SIDE) as i32];
     for (index, chunk) in chunks.iter().enumerate() {
         for &t in chunk.bins.of(tile) {
             let triangle = &chunk.triangles[t as usize];
@@ -77,7 +77,8 @@ struct Edges {
 impl Edges {
     #[inline(always)]
     fn new<const S: usize>(t: &Triangle, origin_px: [i32; 2]) -> Self {
-        let [ox, oy] = origin_px.map(|px| (px << RASTER_BITS) + Layout::<S>::GRID_ORIGIN);
+        let ox = (origin_px[0] << RASTER_BITS) + Layout::<S>::GRID_ORIGIN;
+        let oy = (origin_px[1] << RASTER_BITS) + Layout::<S>::GRID_ORIGIN;
         let (mut a, mut b, mut at_origin) = ([0; 3], [0; 3], [0; 3]);
         for i in 0..3 {
             let j = if i == 2 { 0 } else { i + 1 };

@@ -4,6 +4,9 @@
 //! them twice, for the target's baseline and for AVX2, and the compiler turns the lane loops into
 //! vector instructions. Only exactly rounded operations are used (no fused multiply-add, no
 //! approximate reciprocal), so both give the same bits. Nothing of rendering belongs here.
+//!
+//! What a kernel calls must be `#[inline(always)]`: a function, or a closure, that stands alone is
+//! compiled for the baseline and takes its vectors through memory.
 
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Shl, Shr, Sub};
 
@@ -145,6 +148,12 @@ impl Shr<u32> for I32x8 {
 /// Adding it to a number below 2^22 leaves the number, rounded, in the low bits.
 const ROUND: f32 = 12_582_912.0;
 
+/// The smaller of two numbers.
+#[inline(always)]
+fn least(a: f32, b: f32) -> f32 {
+    if a < b { a } else { b }
+}
+
 impl F32x8 {
     pub(in crate::engine::cpu) const ZERO: Self = Self([0.0; LANES]);
     pub(in crate::engine::cpu) const ONE: Self = Self([1.0; LANES]);
@@ -226,7 +235,6 @@ impl F32x8 {
     #[inline(always)]
     pub(in crate::engine::cpu) fn smallest(self) -> f32 {
         let v = self.0;
-        let least = |a: f32, b: f32| if a < b { a } else { b };
         let half = [least(v[0], v[4]), least(v[1], v[5]), least(v[2], v[6]), least(v[3], v[7])];
         least(least(half[0], half[2]), least(half[1], half[3]))
     }

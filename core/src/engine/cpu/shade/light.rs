@@ -121,15 +121,20 @@ impl<'a> Lighting<'a> {
     /// Sky and ground.
     #[inline(always)]
     fn surrounding(&self, r: &Reflector, roughness: F32x8) -> Vec3x8 {
-        let (half, up) = (F32x8::splat(0.5), Vec3x8::splat(self.up));
-        let (ground, sky) = (Vec3x8::splat(self.ground), Vec3x8::splat(self.sky));
-        let irradiance = |d: Vec3x8| ground.mix(sky, (d.dot(up) * half + half).clamp(0.0, 1.0));
         let mirrored = r.normal.scale(r.n_dot_v + r.n_dot_v) - r.to_viewer;
         let [scale, bias] = split_sum(roughness, r.n_dot_v);
         let bias = Vec3x8::new(bias, bias, bias);
         let mirror = r.f0.scale(scale) + bias;
-        irradiance(r.normal) * r.diffuse
-            + (irradiance(mirrored) * mirror).scale(F32x8::splat(1.0 / PI))
+        self.hemisphere(r.normal) * r.diffuse
+            + (self.hemisphere(mirrored) * mirror).scale(F32x8::splat(1.0 / PI))
+    }
+
+    /// Irradiance of surfaces that face these directions.
+    #[inline(always)]
+    fn hemisphere(&self, d: Vec3x8) -> Vec3x8 {
+        let half = F32x8::splat(0.5);
+        let upwards = (d.dot(Vec3x8::splat(self.up)) * half + half).clamp(0.0, 1.0);
+        Vec3x8::splat(self.ground).mix(Vec3x8::splat(self.sky), upwards)
     }
 }
 

@@ -96,10 +96,9 @@ impl<'a> Surface<'a> {
     /// Albedo, detail and normal map, which share the repeated coordinates.
     #[inline(always)]
     fn apply_repeated(&self, texture: &TexturePoints, look: &mut Look) {
-        let repeat = self.uv_repeat.map(F32x8::splat);
-        let repeated = |v: [F32x8; 2]| [v[0] * repeat[0], v[1] * repeat[1]];
-        let uv = repeated(texture.uv);
-        let size = footprint(repeated(texture.d_dx), repeated(texture.d_dy));
+        let repeat = [F32x8::splat(self.uv_repeat[0]), F32x8::splat(self.uv_repeat[1])];
+        let uv = times(texture.uv, repeat);
+        let size = footprint(times(texture.d_dx, repeat), times(texture.d_dy, repeat));
         if let Some(map) = &self.albedo_map {
             let [r, g, b] = map.sample::<3>(uv, size);
             look.albedo = look.albedo * Vec3x8::new(r, g, b);
@@ -114,31 +113,40 @@ impl<'a> Surface<'a> {
         }
         if let Some((map, strength)) = &self.normal_map {
             let [x, y, z] = map.sample::<3>(uv, size);
-            let signed = |v: F32x8| v + v - F32x8::ONE;
-            let strength = F32x8::splat(*strength);
-            let bend = [signed(x) * strength, signed(y) * strength];
-            look.normal = bent(look.normal, bend, signed(z), texture);
+            let (one, strength) = (F32x8::ONE, F32x8::splat(*strength));
+            let bend = [(x + x - one) * strength, (y + y - one) * strength];
+            look.normal = bent(look.normal, bend, z + z - one, texture);
         }
     }
 
     #[inline(always)]
     fn apply_layers(&self, mask: [F32x8; 4], look: &mut Look) {
-        for (layer, mask) in self.layers.iter().zip(mask) {
-            let color = Vec3x8::splat([layer[0], layer[1], layer[2]]);
-            look.albedo = look.albedo.mix(color, mask);
-            look.roughness = look.roughness.mix(F32x8::splat(layer[3]), mask);
+        for k in 0..4 {
+            let [r, g, b, roughness] = self.layers[k];
+            look.albedo = look.albedo.mix(Vec3x8::splat([r, g, b]), mask[k]);
+            look.roughness = look.roughness.mix(F32x8::splat(roughness), mask[k]);
         }
         look.roughness = look.roughness.clamp(0.04, 1.0);
     }
+}
+
+#[inline(always)]
+fn times(a: [F32x8; 2], b: [F32x8; 2]) -> [F32x8; 2] {
+    [a[0] * b[0], a[1] * b[1]]
+}
+
+/// The unit direction within the surface that is nearest to a direction.
+#[inline(always)]
+fn onto_surface(d: Vec3x8, normal: Vec3x8) -> Vec3x8 {
+    (d - normal.scale(d.dot(normal))).normalized()
 }
 
 /// A normal turned by a tangent-space one: x along growing u, y up the picture (against v), z
 /// along the normal.
 #[inline(always)]
 fn bent(normal: Vec3x8, [x, y]: [F32x8; 2], z: F32x8, texture: &TexturePoints) -> Vec3x8 {
-    let onto_surface = |d: Vec3x8| (d - normal.scale(d.dot(normal))).normalized();
-    let tangent = onto_surface(texture.tangent);
-    let bitangent = onto_surface(texture.bitangent);
+    let tangent = onto_surface(texture.tangent, normal);
+    let bitangent = onto_surface(texture.bitangent, normal);
     (tangent.scale(x) - bitangent.scale(y) + normal.scale(z.max(F32x8::splat(0.05)))).normalized()
 }
 
@@ -155,12 +163,18 @@ fn rotate_hue(c: Vec3x8, turn: f32) -> Vec3x8 {
     let of_green = (c.z - c.x) * inverse + F32x8::splat(2.0);
     let of_blue = (c.x - c.y) * inverse + F32x8::splat(4.0);
     let hue = c.x.ge(value).select(of_red, c.y.ge(value).select(of_green, of_blue));
-    let channel = |n: f32| {
-        let k = hue + F32x8::splat(n + turn);
-        let k = k - (k * F32x8::splat(1.0 / 6.0)).floor() * F32x8::splat(6.0);
-        value - chroma * k.min(F32x8::splat(4.0) - k).clamp(0.0, 1.0)
-    };
-    Vec3x8::new(channel(5.0), channel(3.0), channel(1.0))
+    let hue = hue + F32x8::splat(turn);
+    let r = value - chroma * hue_share(hue + F32x8::splat(5.0));
+    let g = value - chroma * hue_share(hue + F32x8::splat(3.0));
+    let b = value - chroma * hue_share(hue + F32x8::splat(1.0));
+    Vec3x8::new(r, g, b)
+}
+
+/// `clamp(min(k, 4 - k), 0, 1)` of a number modulo 6.
+#[inline(always)]
+fn hue_share(k: F32x8) -> F32x8 {
+    let k = k - (k * F32x8::splat(1.0 / 6.0)).floor() * F32x8::splat(6.0);
+    k.min(F32x8::splat(4.0) - k).clamp(0.0, 1.0)
 }
 
 #[cfg(test)]

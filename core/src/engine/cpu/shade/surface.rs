@@ -23,7 +23,8 @@ impl<'a> Geometry<'a> {
     fn corners(&self, id: u32) -> [&'a Vertex; 3] {
         let (chunk, triangle) = split_id(id);
         let face: &Face = &self.chunks[chunk].faces[triangle];
-        face.corners.map(|c| &self.vertices[c as usize])
+        let [a, b, c] = face.corners;
+        [&self.vertices[a as usize], &self.vertices[b as usize], &self.vertices[c as usize]]
     }
 }
 
@@ -80,24 +81,23 @@ impl<'a> Triangles<'a> {
     #[inline(always)]
     fn new(geometry: &Geometry<'a>, fragments: &[Fragment]) -> Self {
         let first = geometry.corners(fragments[0].id);
-        let same = fragments.iter().all(|f| f.id == fragments[0].id);
+        let mut other = 0;
+        for fragment in fragments {
+            other |= fragment.id ^ fragments[0].id;
+        }
+        let same = other == 0;
         let mut corners = [first; LANES];
         let p = if same {
-            first.map(|v| Vec3x8::splat(v.position()))
+            [
+                Vec3x8::splat(first[0].position()),
+                Vec3x8::splat(first[1].position()),
+                Vec3x8::splat(first[2].position()),
+            ]
         } else {
-            for (corners, fragment) in corners.iter_mut().zip(fragments) {
-                *corners = geometry.corners(fragment.id);
+            for lane in 0..LANES {
+                corners[lane] = geometry.corners(fragments[lane].id);
             }
-            [0, 1, 2].map(|k| {
-                let axis = |a: usize| {
-                    let mut out = F32x8::ZERO;
-                    for lane in 0..LANES {
-                        out.0[lane] = corners[lane][k].0[a];
-                    }
-                    out
-                };
-                Vec3x8::new(axis(0), axis(1), axis(2))
-            })
+            [positions(&corners, 0), positions(&corners, 1), positions(&corners, 2)]
         };
         Self { origin: p[0], edge1: p[1] - p[0], edge2: p[2] - p[0], corners, same }
     }
@@ -115,10 +115,10 @@ impl<'a> Triangles<'a> {
             }
         } else {
             for lane in 0..LANES {
-                let [a, b, c] = self.corners[lane].map(|v| F32x8(v.0));
-                let mixed = a * F32x8::splat(weights[0].0[lane])
-                    + b * F32x8::splat(weights[1].0[lane])
-                    + c * F32x8::splat(weights[2].0[lane]);
+                let [a, b, c] = self.corners[lane];
+                let mixed = F32x8(a.0) * F32x8::splat(weights[0].0[lane])
+                    + F32x8(b.0) * F32x8::splat(weights[1].0[lane])
+                    + F32x8(c.0) * F32x8::splat(weights[2].0[lane]);
                 for k in Vertex::U..LANES {
                     out[k].0[lane] = mixed.0[k];
                 }
@@ -133,13 +133,24 @@ impl<'a> Triangles<'a> {
         let mut d = [[F32x8::ZERO; 2]; 2];
         for lane in 0..LANES {
             let [a, b, c] = self.corners[lane];
-            for (axis, k) in [Vertex::U, Vertex::V].into_iter().enumerate() {
-                d[0][axis].0[lane] = b.0[k] - a.0[k];
-                d[1][axis].0[lane] = c.0[k] - a.0[k];
-            }
+            d[0][0].0[lane] = b.0[Vertex::U] - a.0[Vertex::U];
+            d[0][1].0[lane] = b.0[Vertex::V] - a.0[Vertex::V];
+            d[1][0].0[lane] = c.0[Vertex::U] - a.0[Vertex::U];
+            d[1][1].0[lane] = c.0[Vertex::V] - a.0[Vertex::V];
         }
         d
     }
+}
+
+/// Positions of one corner of eight triangles.
+#[inline(always)]
+fn positions(corners: &[[&Vertex; 3]; LANES], corner: usize) -> Vec3x8 {
+    let mut p = Vec3x8::ZERO;
+    for lane in 0..LANES {
+        let [x, y, z] = corners[lane][corner].position();
+        (p.x.0[lane], p.y.0[lane], p.z.0[lane]) = (x, y, z);
+    }
+    p
 }
 
 /// Finds the surface under eight fragments.
@@ -178,27 +189,45 @@ pub(super) fn points(
     let n = Vertex::NORMAL;
     let normal = Vec3x8::new(mixed[n], mixed[n + 1], mixed[n + 2]).normalized();
     let back = F32x8::ZERO.gt(determinant);
-    let texture = textured.then(|| {
-        let [along1, along2] = triangles.texture_edges();
-        let change = barycentric_change(&triangles, rays, [raw1, raw2], inverse);
-        let d = |pixel: usize| {
-            [0, 1].map(|axis| change[0][pixel] * along1[axis] + change[1][pixel] * along2[axis])
-        };
-        // Solves edge_k = u_k tangent + v_k bitangent; the sign of the area is all that is kept
-        // of the denominator, lengths do not matter.
-        let area = along1[0] * along2[1] - along1[1] * along2[0];
-        let sign = area.ge(F32x8::ZERO).select(F32x8::ONE, F32x8::splat(-1.0));
-        let tangent = edge1.scale(along2[1]) - edge2.scale(along1[1]);
-        let bitangent = edge2.scale(along1[0]) - edge1.scale(along2[0]);
-        TexturePoints {
-            uv: [mixed[Vertex::U], mixed[Vertex::V]],
-            d_dx: d(0),
-            d_dy: d(1),
-            tangent: tangent.scale(sign),
-            bitangent: bitangent.scale(sign),
-        }
-    });
+    let texture = if textured {
+        let uv = [mixed[Vertex::U], mixed[Vertex::V]];
+        Some(texture_points(&triangles, rays, [raw1, raw2], inverse, uv))
+    } else {
+        None
+    };
     Points { position, normal, back, texture }
+}
+
+/// How texture coordinates change over a pixel, and in which directions they grow.
+#[inline(always)]
+fn texture_points(
+    triangles: &Triangles<'_>,
+    rays: &Rays,
+    barycentric: [F32x8; 2],
+    inverse: F32x8,
+    uv: [F32x8; 2],
+) -> TexturePoints {
+    let [along1, along2] = triangles.texture_edges();
+    let [change1, change2] = barycentric_change(triangles, rays, barycentric, inverse);
+    // Solves edge_k = u_k tangent + v_k bitangent; the sign of the area is all that is kept of the
+    // denominator, lengths do not matter.
+    let area = along1[0] * along2[1] - along1[1] * along2[0];
+    let sign = area.ge(F32x8::ZERO).select(F32x8::ONE, F32x8::splat(-1.0));
+    let tangent = triangles.edge1.scale(along2[1]) - triangles.edge2.scale(along1[1]);
+    let bitangent = triangles.edge2.scale(along1[0]) - triangles.edge1.scale(along2[0]);
+    TexturePoints {
+        uv,
+        d_dx: [
+            change1[0] * along1[0] + change2[0] * along2[0],
+            change1[0] * along1[1] + change2[0] * along2[1],
+        ],
+        d_dy: [
+            change1[1] * along1[0] + change2[1] * along2[0],
+            change1[1] * along1[1] + change2[1] * along2[1],
+        ],
+        tangent: tangent.scale(sign),
+        bitangent: bitangent.scale(sign),
+    }
 }
 
 /// Weights of the three corners, none negative and of sum 1, from two of them.
@@ -222,9 +251,11 @@ fn barycentric_change(
 ) -> [[F32x8; 2]; 2] {
     let numerators = [t.origin.cross(t.edge2), t.edge1.cross(t.origin)];
     let determinant = t.edge2.cross(t.edge1);
-    [0, 1].map(|k| {
+    let mut change = [[F32x8::ZERO; 2]; 2];
+    for k in 0..2 {
         let x = (numerators[k].x - at[k] * determinant.x) * inverse;
         let y = (numerators[k].y - at[k] * determinant.y) * inverse;
-        [x * F32x8::splat(rays.step[0]), y * F32x8::splat(rays.step[1])]
-    })
+        change[k] = [x * F32x8::splat(rays.step[0]), y * F32x8::splat(rays.step[1])];
+    }
+    change
 }

@@ -64,10 +64,10 @@ impl<'a> Sampler<'a> {
         let level = lower.round_i32();
         let mut out = self.bilinear::<C>(uv, level);
         if between.gt(F32x8::ZERO).any() {
-            let upper = I32x8(level.0.map(|l| (l + 1).min(self.log2_size)));
-            let coarse = self.bilinear::<C>(uv, upper);
-            for (out, coarse) in out.iter_mut().zip(coarse) {
-                *out = out.mix(coarse, between);
+            // Beyond the last level there is nothing to mix in, and the mask keeps it in bounds.
+            let coarse = self.bilinear::<C>(uv, level + I32x8::splat(1));
+            for c in 0..C {
+                out[c] = out[c].mix(coarse[c], between);
             }
         }
         out
@@ -100,10 +100,12 @@ impl<'a> Sampler<'a> {
             self.fetch::<C>(rows[1] + columns[0]),
             self.fetch::<C>(rows[1] + columns[1]),
         ];
-        std::array::from_fn(|c| {
+        let mut out = [F32x8::ZERO; C];
+        for c in 0..C {
             let upper = corners[0][c].mix(corners[1][c], wx);
-            upper.mix(corners[2][c].mix(corners[3][c], wx), wy)
-        })
+            out[c] = upper.mix(corners[2][c].mix(corners[3][c], wx), wy);
+        }
+        out
     }
 
     /// Decoded channels of eight texels.
@@ -112,8 +114,8 @@ impl<'a> Sampler<'a> {
         let mut out = [F32x8::ZERO; C];
         for lane in 0..LANES {
             let texel = self.texels.get(index.0[lane] as usize).copied().unwrap_or(0);
-            for (c, out) in out.iter_mut().enumerate() {
-                out.0[lane] = self.decode[(texel >> (8 * c) & 255) as usize];
+            for c in 0..C {
+                out[c].0[lane] = self.decode[(texel >> (8 * c) & 255) as usize];
             }
         }
         out
