@@ -43,41 +43,41 @@ impl Rays {
 }
 
 /// Surface under eight fragments.
-pub(super) struct Points {
+pub(super) struct Points<const AVX2: bool> {
     /// View space.
-    pub(super) position: Vec3x8,
+    pub(super) position: Vec3x8<AVX2>,
     /// Unit shading normal, view space, towards the side that was modelled.
-    pub(super) normal: Vec3x8,
+    pub(super) normal: Vec3x8<AVX2>,
     /// Where the triangle's counter-clockwise side faces away.
-    pub(super) back: Mask8,
+    pub(super) back: Mask8<AVX2>,
     /// Present where asked for.
-    pub(super) texture: Option<TexturePoints>,
+    pub(super) texture: Option<TexturePoints<AVX2>>,
 }
 
 /// Texture coordinates under eight fragments.
-pub(super) struct TexturePoints {
-    pub(super) uv: [F32x8; 2],
+pub(super) struct TexturePoints<const AVX2: bool> {
+    pub(super) uv: [F32x8<AVX2>; 2],
     /// Change over a pixel to the right.
-    pub(super) d_dx: [F32x8; 2],
+    pub(super) d_dx: [F32x8<AVX2>; 2],
     /// Change over a pixel down.
-    pub(super) d_dy: [F32x8; 2],
+    pub(super) d_dy: [F32x8<AVX2>; 2],
     /// Direction in which u grows, view space, any length.
-    pub(super) tangent: Vec3x8,
+    pub(super) tangent: Vec3x8<AVX2>,
     /// Direction in which v grows, view space, any length.
-    pub(super) bitangent: Vec3x8,
+    pub(super) bitangent: Vec3x8<AVX2>,
 }
 
 /// The triangles of eight fragments: one corner, the two edges from it, and the vertices.
-struct Triangles<'a> {
-    origin: Vec3x8,
-    edge1: Vec3x8,
-    edge2: Vec3x8,
+struct Triangles<'a, const AVX2: bool> {
+    origin: Vec3x8<AVX2>,
+    edge1: Vec3x8<AVX2>,
+    edge2: Vec3x8<AVX2>,
     corners: [[&'a Vertex; 3]; LANES],
     /// All eight are the same.
     same: bool,
 }
 
-impl<'a> Triangles<'a> {
+impl<'a, const AVX2: bool> Triangles<'a, AVX2> {
     #[inline(always)]
     fn new(geometry: &Geometry<'a>, fragments: &[Fragment]) -> Self {
         let first = geometry.corners(fragments[0].id);
@@ -104,7 +104,7 @@ impl<'a> Triangles<'a> {
 
     /// All eight numbers of the vertices, interpolated.
     #[inline(always)]
-    fn interpolate(&self, weights: [F32x8; 3]) -> [F32x8; LANES] {
+    fn interpolate(&self, weights: [F32x8<AVX2>; 3]) -> [F32x8<AVX2>; LANES] {
         let mut out = [F32x8::ZERO; LANES];
         if self.same {
             let [a, b, c] = self.corners[0];
@@ -116,7 +116,7 @@ impl<'a> Triangles<'a> {
         } else {
             for lane in 0..LANES {
                 let [a, b, c] = self.corners[lane];
-                let mixed = F32x8(a.0) * F32x8::splat(weights[0].0[lane])
+                let mixed = F32x8::<AVX2>(a.0) * F32x8::splat(weights[0].0[lane])
                     + F32x8(b.0) * F32x8::splat(weights[1].0[lane])
                     + F32x8(c.0) * F32x8::splat(weights[2].0[lane]);
                 for k in Vertex::U..LANES {
@@ -129,7 +129,7 @@ impl<'a> Triangles<'a> {
 
     /// Differences of texture coordinates along both edges.
     #[inline(always)]
-    fn texture_edges(&self) -> [[F32x8; 2]; 2] {
+    fn texture_edges(&self) -> [[F32x8<AVX2>; 2]; 2] {
         let mut d = [[F32x8::ZERO; 2]; 2];
         for lane in 0..LANES {
             let [a, b, c] = self.corners[lane];
@@ -144,7 +144,7 @@ impl<'a> Triangles<'a> {
 
 /// Positions of one corner of eight triangles.
 #[inline(always)]
-fn positions(corners: &[[&Vertex; 3]; LANES], corner: usize) -> Vec3x8 {
+fn positions<const AVX2: bool>(corners: &[[&Vertex; 3]; LANES], corner: usize) -> Vec3x8<AVX2> {
     let mut p = Vec3x8::ZERO;
     for lane in 0..LANES {
         let [x, y, z] = corners[lane][corner].position();
@@ -155,12 +155,12 @@ fn positions(corners: &[[&Vertex; 3]; LANES], corner: usize) -> Vec3x8 {
 
 /// Finds the surface under eight fragments.
 #[inline(always)]
-pub(super) fn points(
+pub(super) fn points<const AVX2: bool>(
     geometry: &Geometry<'_>,
     rays: &Rays,
     fragments: &[Fragment],
     textured: bool,
-) -> Points {
+) -> Points<AVX2> {
     let fragments = &fragments[..LANES];
     let (mut x, mut y) = (F32x8::ZERO, F32x8::ZERO);
     for lane in 0..LANES {
@@ -200,13 +200,13 @@ pub(super) fn points(
 
 /// How texture coordinates change over a pixel, and in which directions they grow.
 #[inline(always)]
-fn texture_points(
-    triangles: &Triangles<'_>,
+fn texture_points<const AVX2: bool>(
+    triangles: &Triangles<'_, AVX2>,
     rays: &Rays,
-    barycentric: [F32x8; 2],
-    inverse: F32x8,
-    uv: [F32x8; 2],
-) -> TexturePoints {
+    barycentric: [F32x8<AVX2>; 2],
+    inverse: F32x8<AVX2>,
+    uv: [F32x8<AVX2>; 2],
+) -> TexturePoints<AVX2> {
     let [along1, along2] = triangles.texture_edges();
     let [change1, change2] = barycentric_change(triangles, rays, barycentric, inverse);
     // Solves edge_k = u_k tangent + v_k bitangent; the sign of the area is all that is kept of the
@@ -232,7 +232,7 @@ fn texture_points(
 
 /// Weights of the three corners, none negative and of sum 1, from two of them.
 #[inline(always)]
-fn clamp_to_triangle(w1: F32x8, w2: F32x8) -> [F32x8; 3] {
+fn clamp_to_triangle<const AVX2: bool>(w1: F32x8<AVX2>, w2: F32x8<AVX2>) -> [F32x8<AVX2>; 3] {
     let zero = F32x8::ZERO;
     let (w1, w2) = (w1.max(zero), w2.max(zero));
     let w0 = (F32x8::ONE - w1 - w2).max(zero);
@@ -243,12 +243,12 @@ fn clamp_to_triangle(w1: F32x8, w2: F32x8) -> [F32x8; 3] {
 /// Change of the second and third barycentric coordinate over a pixel to the right and a pixel
 /// down: numerators and determinant are linear in the ray.
 #[inline(always)]
-fn barycentric_change(
-    t: &Triangles<'_>,
+fn barycentric_change<const AVX2: bool>(
+    t: &Triangles<'_, AVX2>,
     rays: &Rays,
-    at: [F32x8; 2],
-    inverse: F32x8,
-) -> [[F32x8; 2]; 2] {
+    at: [F32x8<AVX2>; 2],
+    inverse: F32x8<AVX2>,
+) -> [[F32x8<AVX2>; 2]; 2] {
     let numerators = [t.origin.cross(t.edge2), t.edge1.cross(t.origin)];
     let determinant = t.edge2.cross(t.edge1);
     let mut change = [[F32x8::ZERO; 2]; 2];
