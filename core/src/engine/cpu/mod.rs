@@ -321,7 +321,7 @@ fn shading<'a>(
     shadow: Option<SunShadow<'a>>,
 ) -> Shading<'a> {
     let view = &list.view;
-    let display = |nits: f32| display::tone_map(F32x8::splat(nits * list.exposure)).0[0];
+    let display = |nits: f32| display::tone_map(F32x8::<false>::splat(nits * list.exposure)).0[0];
     Shading {
         stage: Stage {
             geometry: Geometry { chunks, vertices: &placed.vertices },

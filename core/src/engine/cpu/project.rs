@@ -110,9 +110,10 @@ impl Projection {
 
     /// Projects eight points.
     #[inline(always)]
-    pub(super) fn project8(&self, p: Vec3x8, out: &mut [ScreenVertex]) {
+    pub(super) fn project8<const AVX2: bool>(&self, p: Vec3x8<AVX2>, out: &mut [ScreenVertex]) {
         let out = &mut out[..LANES];
-        let [guard_x, guard_y] = self.size.map(|s| f64::from(s) + GUARD_PX);
+        let guard_x = f64::from(self.size[0]) + GUARD_PX;
+        let guard_y = f64::from(self.size[1]) + GUARD_PX;
         let (mut x, mut y, mut depth) = ([0; LANES], [0; LANES], [0.0; LANES]);
         let mut i = 0;
         while i < LANES {
@@ -147,7 +148,7 @@ fn to_fixed(px: f64) -> i32 {
 
 /// Positions of eight vertices.
 #[inline(always)]
-pub(super) fn positions8(vertices: &[Vertex]) -> Vec3x8 {
+pub(super) fn positions8<const AVX2: bool>(vertices: &[Vertex]) -> Vec3x8<AVX2> {
     let vertices = &vertices[..LANES];
     let (mut x, mut y, mut z) = ([0.0; LANES], [0.0; LANES], [0.0; LANES]);
     for i in 0..LANES {
@@ -163,9 +164,13 @@ kernel! {
 }
 
 #[inline(always)]
-fn project_body(vertices: &[Vertex], projection: &Projection, out: &mut [ScreenVertex]) {
+fn project_body<const AVX2: bool>(
+    vertices: &[Vertex],
+    projection: &Projection,
+    out: &mut [ScreenVertex],
+) {
     for (from, to) in vertices.chunks_exact(LANES).zip(out.chunks_exact_mut(LANES)) {
-        projection.project8(positions8(from), to);
+        projection.project8(positions8::<AVX2>(from), to);
     }
 }
 

@@ -29,7 +29,7 @@ kernel! {
 }
 
 #[inline(always)]
-fn raster_body<const S: usize, const IDS: bool, const SIDE: usize>(
+fn raster_body<const AVX2: bool, const S: usize, const IDS: bool, const SIDE: usize>(
     chunks: &[Chunk],
     tile: [u32; 2],
     depth: &mut [f32],
@@ -47,17 +47,17 @@ fn raster_body<const S: usize, const IDS: bool, const SIDE: usize>(
     } else {
         ids
     };
-    let origin_px = tile.map(|t| (t as usize * SIDE) as i32);
+    let origin_px = [(tile[0] as usize * SIDE) as i32, (tile[1] as usize * SIDE) as i32];
     for (index, chunk) in chunks.iter().enumerate() {
         for &t in chunk.bins.of(tile) {
             let triangle = &chunk.triangles[t as usize];
             let id = first_id(index) + t;
             if triangle.large {
-                raster_triangle::<S, IDS, SIDE, true>(
+                raster_triangle::<AVX2, S, IDS, SIDE, true>(
                     triangle, id, origin_px, depth, ids, farthest,
                 );
             } else {
-                raster_triangle::<S, IDS, SIDE, false>(
+                raster_triangle::<AVX2, S, IDS, SIDE, false>(
                     triangle, id, origin_px, depth, ids, farthest,
                 );
             }
@@ -77,7 +77,8 @@ struct Edges {
 impl Edges {
     #[inline(always)]
     fn new<const S: usize>(t: &Triangle, origin_px: [i32; 2]) -> Self {
-        let [ox, oy] = origin_px.map(|px| (px << RASTER_BITS) + Layout::<S>::GRID_ORIGIN);
+        let ox = (origin_px[0] << RASTER_BITS) + Layout::<S>::GRID_ORIGIN;
+        let oy = (origin_px[1] << RASTER_BITS) + Layout::<S>::GRID_ORIGIN;
         let (mut a, mut b, mut at_origin) = ([0; 3], [0; 3], [0; 3]);
         for i in 0..3 {
             let j = if i == 2 { 0 } else { i + 1 };
@@ -114,7 +115,13 @@ impl Edges {
 }
 
 #[inline(always)]
-fn raster_triangle<const S: usize, const IDS: bool, const SIDE: usize, const LARGE: bool>(
+fn raster_triangle<
+    const AVX2: bool,
+    const S: usize,
+    const IDS: bool,
+    const SIDE: usize,
+    const LARGE: bool,
+>(
     t: &Triangle,
     id: u32,
     origin_px: [i32; 2],
@@ -130,19 +137,19 @@ fn raster_triangle<const S: usize, const IDS: bool, const SIDE: usize, const LAR
 
     // What a step within the block adds: per lane, and at most.
     let last_step = grid_per_block - 1;
-    let mut lane_edges = [[I32x8::ZERO; 3]; HALVES];
+    let mut lane_edges = [[I32x8::<AVX2>::ZERO; 3]; HALVES];
     let mut at_most = [0; 3];
     let [mut slope_x, mut slope_y] = [t.plane.dx as f32, t.plane.dy as f32];
     if !(slope_x.is_finite() && slope_y.is_finite()) {
         (slope_x, slope_y) = (0.0, 0.0);
     }
-    let mut lane_depth = [F32x8::ZERO; HALVES];
+    let mut lane_depth = [F32x8::<AVX2>::ZERO; HALVES];
     for (half, (lane_edges, lane_depth)) in lane_edges.iter_mut().zip(&mut lane_depth).enumerate() {
-        let (x, y) = lane_steps::<S>(half);
+        let (x, y) = lane_steps::<AVX2, S>(half);
         for i in 0..3 {
             lane_edges[i] = I32x8::splat(edges.a[i]) * x + I32x8::splat(edges.b[i]) * y;
         }
-        let (x, y) = lane_px::<S>(half);
+        let (x, y) = lane_px::<AVX2, S>(half);
         *lane_depth = F32x8::splat(slope_x) * x + F32x8::splat(slope_y) * y;
     }
     for i in 0..3 {
@@ -169,7 +176,7 @@ fn raster_triangle<const S: usize, const IDS: bool, const SIDE: usize, const LAR
             }
             let block_depth =
                 depth_origin + slope_x * (bx * block_px) as f32 + slope_y * (by * block_px) as f32;
-            let mut least = F32x8::splat(f32::MAX);
+            let mut least = F32x8::<AVX2>::splat(f32::MAX);
             for half in 0..HALVES {
                 let from = block * BLOCK + half * LANES;
                 let old_depth = F32x8::load(&depth[from..from + LANES]);
@@ -195,7 +202,7 @@ fn raster_triangle<const S: usize, const IDS: bool, const SIDE: usize, const LAR
 
 /// Position of the lanes of half a block, in grid steps from the block's corner.
 #[inline(always)]
-fn lane_steps<const S: usize>(half: usize) -> (I32x8, I32x8) {
+fn lane_steps<const AVX2: bool, const S: usize>(half: usize) -> (I32x8<AVX2>, I32x8<AVX2>) {
     let (mut x, mut y) = ([0; LANES], [0; LANES]);
     for lane in 0..LANES {
         let p = Layout::<S>::BLOCK_16TH[half * LANES + lane];
@@ -207,7 +214,7 @@ fn lane_steps<const S: usize>(half: usize) -> (I32x8, I32x8) {
 
 /// Position of the lanes of half a block, in pixels from the block's corner.
 #[inline(always)]
-fn lane_px<const S: usize>(half: usize) -> (F32x8, F32x8) {
+fn lane_px<const AVX2: bool, const S: usize>(half: usize) -> (F32x8<AVX2>, F32x8<AVX2>) {
     let (mut x, mut y) = ([0.0; LANES], [0.0; LANES]);
     for lane in 0..LANES {
         let p = Layout::<S>::BLOCK_16TH[half * LANES + lane];

@@ -61,7 +61,7 @@ kernel! {
 }
 
 #[inline(always)]
-fn resolve_body<const S: usize>(
+fn resolve_body<const AVX2: bool, const S: usize>(
     objects: &[u16],
     uniform: &[bool],
     depth: &[f32],
@@ -79,7 +79,7 @@ fn resolve_body<const S: usize>(
         out.distance_m[slot] = nearest;
     }
     for eight in out.distance_m.chunks_exact_mut(LANES) {
-        let depth = F32x8::load(eight);
+        let depth = F32x8::<AVX2>::load(eight);
         let seen = depth.gt(F32x8::ZERO);
         let distance = F32x8::splat(near_m) / seen.select(depth, F32x8::ONE);
         seen.select(distance, F32x8::ZERO).store(eight);

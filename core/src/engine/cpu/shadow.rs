@@ -46,8 +46,9 @@ impl SunAxes {
     }
 
     #[inline(always)]
-    fn coordinates8(&self, p: Vec3x8) -> [F32x8; 3] {
-        self.0.map(|axis| Vec3x8::splat(axis).dot(p))
+    fn coordinates8<const AVX2: bool>(&self, p: Vec3x8<AVX2>) -> [F32x8<AVX2>; 3] {
+        let [right, up, to_sun] = self.0;
+        [Vec3x8::splat(right).dot(p), Vec3x8::splat(up).dot(p), Vec3x8::splat(to_sun).dot(p)]
     }
 }
 
@@ -96,24 +97,21 @@ kernel! {
 }
 
 #[inline(always)]
-fn bound_body(
+fn bound_body<const AVX2: bool>(
     vertices: &[Vertex],
     screen: &[ScreenVertex],
     size: [u32; 2],
     axes: &SunAxes,
 ) -> (Bounds, Bounds) {
     let [width, height] = size.map(|s| (s as i32) << SCREEN_BITS);
-    let (low, high) = (F32x8::splat(f32::MAX), F32x8::splat(f32::MIN));
+    let (low, high) = (F32x8::<AVX2>::splat(f32::MAX), F32x8::<AVX2>::splat(f32::MIN));
     let (mut all, mut seen) = ([[low, high]; 3], [[low, high]; 3]);
     for (vertices, screen) in vertices.chunks_exact(LANES).zip(screen.chunks_exact(LANES)) {
         let (mut x, mut y) = ([0; LANES], [0; LANES]);
         for lane in 0..LANES {
             (x[lane], y[lane]) = (screen[lane].x, screen[lane].y);
         }
-        let within = |v: [i32; LANES], end: i32| {
-            I32x8(v).gt(I32x8::splat(-1)) & I32x8::splat(end + 1).gt(I32x8(v))
-        };
-        let visible = within(x, width) & within(y, height);
+        let visible = within::<AVX2>(I32x8(x), width) & within(I32x8(y), height);
         let p = axes.coordinates8(positions8(vertices));
         for axis in 0..3 {
             all[axis][0] = all[axis][0].min(p[axis]);
@@ -122,11 +120,22 @@ fn bound_body(
             seen[axis][1] = seen[axis][1].max(visible.select(p[axis], high));
         }
     }
-    let bounds = |b: [[F32x8; 2]; 3]| Bounds {
+    (narrowed(&all), narrowed(&seen))
+}
+
+/// Whether whole numbers lie in `0..=end`.
+#[inline(always)]
+fn within<const AVX2: bool>(v: I32x8<AVX2>, end: i32) -> Mask8<AVX2> {
+    v.gt(I32x8::splat(-1)) & I32x8::splat(end + 1).gt(v)
+}
+
+/// Eight boxes to one.
+#[inline(always)]
+fn narrowed<const AVX2: bool>(b: &[[F32x8<AVX2>; 2]; 3]) -> Bounds {
+    Bounds {
         min: [b[0][0].smallest(), b[1][0].smallest(), b[2][0].smallest()],
         max: [b[0][1].largest(), b[1][1].largest(), b[2][1].largest()],
-    };
-    (bounds(all), bounds(seen))
+    }
 }
 
 /// How points are found in the shadow map.
@@ -237,16 +246,21 @@ impl SunShadow<'_> {
     /// that change is `texel * tan(angle)`, and an offset of h along the normal gains
     /// `h / cos(angle)`. `extra_m` moves look-ups further off, for light that wraps round.
     #[inline(always)]
-    pub(super) fn lit(&self, p: Vec3x8, n: Vec3x8, n_dot_l: F32x8, extra_m: f32) -> F32x8 {
+    pub(super) fn lit<const AVX2: bool>(
+        &self,
+        p: Vec3x8<AVX2>,
+        n: Vec3x8<AVX2>,
+        n_dot_l: F32x8<AVX2>,
+        extra_m: f32,
+    ) -> F32x8<AVX2> {
         let view = &self.view;
         let sine = (F32x8::ONE - n_dot_l * n_dot_l).max(F32x8::ZERO).sqrt();
         let offset_m =
             sine * F32x8::splat(1.5 * view.texel_m) + F32x8::splat(0.25 * view.texel_m + extra_m);
         let q = p + n.scale(offset_m);
-        let row = |r: [f32; 4]| Vec3x8::splat([r[0], r[1], r[2]]).dot(q) + F32x8::splat(r[3]);
         let half = F32x8::splat(0.5);
-        let (x, y) = (row(view.rows[0]) - half, row(view.rows[1]) - half);
-        let depth = row(view.rows[2]) + F32x8::splat(0.5 * view.texel_m * view.depth_per_m);
+        let (x, y) = (affine8(&view.rows[0], q) - half, affine8(&view.rows[1], q) - half);
+        let depth = affine8(&view.rows[2], q) + F32x8::splat(0.5 * view.texel_m * view.depth_per_m);
         let last = F32x8::splat(self.map.size as f32 - 1.0);
         let inside = x.ge(F32x8::ZERO) & last.gt(x) & y.ge(F32x8::ZERO) & last.gt(y);
         if !inside.any() {
@@ -260,7 +274,12 @@ impl SunShadow<'_> {
 
     /// Bilinear mean of four comparisons.
     #[inline(always)]
-    fn filter(&self, x: F32x8, y: F32x8, depth: F32x8) -> F32x8 {
+    fn filter<const AVX2: bool>(
+        &self,
+        x: F32x8<AVX2>,
+        y: F32x8<AVX2>,
+        depth: F32x8<AVX2>,
+    ) -> F32x8<AVX2> {
         let (left, top) = (x.floor(), y.floor());
         let (wx, wy) = (x - left, y - top);
         let (left, top) = (left.round_i32(), top.round_i32());
@@ -268,34 +287,42 @@ impl SunShadow<'_> {
         let columns = [column_offset(left), column_offset(left + one)];
         let tiles_per_row = (self.map.size / TILE) as i32;
         let rows = [row_offset(top, tiles_per_row), row_offset(top + one, tiles_per_row)];
-        let tap = |row: I32x8, column: I32x8| {
-            let shaded: Mask8 = self.fetch(row + column).gt(depth);
-            shaded.select(F32x8::ZERO, F32x8::ONE)
-        };
-        let upper = tap(rows[0], columns[0]).mix(tap(rows[0], columns[1]), wx);
-        let lower = tap(rows[1], columns[0]).mix(tap(rows[1], columns[1]), wx);
+        let upper = self
+            .compare(rows[0] + columns[0], depth)
+            .mix(self.compare(rows[0] + columns[1], depth), wx);
+        let lower = self
+            .compare(rows[1] + columns[0], depth)
+            .mix(self.compare(rows[1] + columns[1], depth), wx);
         upper.mix(lower, wy)
     }
 
+    /// 1 where nothing in the map is nearer to the sun, else 0.
     #[inline(always)]
-    fn fetch(&self, index: I32x8) -> F32x8 {
-        let mut out = [0.0; LANES];
-        for (out, index) in out.iter_mut().zip(index.0) {
-            *out = self.map.texels.get(index as usize).copied().unwrap_or(0.0);
+    fn compare<const AVX2: bool>(&self, index: I32x8<AVX2>, depth: F32x8<AVX2>) -> F32x8<AVX2> {
+        let mut nearest = F32x8::ZERO;
+        for lane in 0..LANES {
+            let texel = self.map.texels.get(index.0[lane] as usize);
+            nearest.0[lane] = texel.copied().unwrap_or(0.0);
         }
-        F32x8(out)
+        nearest.gt(depth).select(F32x8::ZERO, F32x8::ONE)
     }
+}
+
+/// An affine function of eight points.
+#[inline(always)]
+fn affine8<const AVX2: bool>(row: &[f32; 4], p: Vec3x8<AVX2>) -> F32x8<AVX2> {
+    Vec3x8::splat([row[0], row[1], row[2]]).dot(p) + F32x8::splat(row[3])
 }
 
 /// What a texel's column adds to its place in the map.
 #[inline(always)]
-fn column_offset(x: I32x8) -> I32x8 {
+fn column_offset<const AVX2: bool>(x: I32x8<AVX2>) -> I32x8<AVX2> {
     ((x >> 6) << 12) + (((x >> 2) & I32x8::splat(15)) << 4) + (x & I32x8::splat(3))
 }
 
 /// What a texel's row adds to its place in the map.
 #[inline(always)]
-fn row_offset(y: I32x8, tiles_per_row: i32) -> I32x8 {
+fn row_offset<const AVX2: bool>(y: I32x8<AVX2>, tiles_per_row: i32) -> I32x8<AVX2> {
     (y >> 6) * I32x8::splat(tiles_per_row << 12)
         + (((y >> 2) & I32x8::splat(15)) << 8)
         + ((y & I32x8::splat(3)) << 2)
@@ -317,8 +344,8 @@ mod tests {
                 Layout::<1>::BLOCK_16TH[lane],
                 [inner[0] as i32 % 4 * 16 + 8, inner[1] as i32 % 4 * 16 + 8]
             );
-            let found =
-                column_offset(I32x8::splat(x as i32)) + row_offset(I32x8::splat(y as i32), 2);
+            let found = column_offset(I32x8::<false>::splat(x as i32))
+                + row_offset(I32x8::<false>::splat(y as i32), 2);
             assert_eq!(found.0[0] as usize, tile * 4096 + block * 16 + lane);
         }
     }

@@ -1,9 +1,14 @@
-//! Eight lanes of plain arrays, and the choice of instruction set at run time.
+//! Eight lanes, and the choice of instruction set at run time.
 //!
-//! Kernels are written once over [`F32x8`] and [`I32x8`]; the [`kernel`] macro compiles each of
-//! them twice, for the target's baseline and for AVX2, and the compiler turns the lane loops into
-//! vector instructions. Only exactly rounded operations are used (no fused multiply-add, no
-//! approximate reciprocal), so both give the same bits. Nothing of rendering belongs here.
+//! Kernels are written once over [`F32x8`] and [`I32x8`], with the instruction set as a constant
+//! parameter; the [`kernel`] macro compiles each of them twice. Without AVX2 the lanes are plain
+//! arrays that the compiler vectorises as the target allows; with it, each operation is one
+//! instruction, as the compiler cannot be relied on to find eight lanes again in a long kernel.
+//! Only exactly rounded operations are used (no fused multiply-add, no approximate reciprocal), so
+//! both give the same bits. Nothing of rendering belongs here.
+//!
+//! What a kernel calls must be `#[inline(always)]`: a function, or a closure, that stands alone is
+//! compiled for the baseline and takes its vectors through memory.
 
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Shl, Shr, Sub};
 
@@ -39,7 +44,8 @@ impl Level {
     }
 }
 
-/// Defines a function that runs an `#[inline(always)]` body in the form that a [`Level`] names.
+/// Defines a function that runs an `#[inline(always)]` body in the form that a [`Level`] names;
+/// the body's first constant parameter says which.
 macro_rules! kernel {
     ($(#[$meta:meta])* fn $name:ident $([$(const $c:ident: $ct:ty),+])?
      ($($arg:ident: $ty:ty),* $(,)?) $(-> $ret:ty)? = $body:ident) => {
@@ -51,7 +57,7 @@ macro_rules! kernel {
             {
                 #[target_feature(enable = "avx2")]
                 fn avx2 $(<$(const $c: $ct),+>)? ($($arg: $ty),*) $(-> $ret)? {
-                    $body $(::<$($c),+>)? ($($arg),*)
+                    $body::<true $($(, $c)+)?>($($arg),*)
                 }
                 if level.has_avx2() {
                     #[expect(unsafe_code, reason = "a function for a detected instruction set")]
@@ -61,7 +67,7 @@ macro_rules! kernel {
             }
             #[cfg(not(target_arch = "x86_64"))]
             let _ = level;
-            $body $(::<$($c),+>)? ($($arg),*)
+            $body::<false $($(, $c)+)?>($($arg),*)
         }
     };
 }
@@ -80,72 +86,114 @@ macro_rules! lanes {
     }};
 }
 
-/// Eight single-precision numbers.
+/// Eight single-precision numbers. Those with `AVX2` set may be computed with only inside the AVX2
+/// form of a kernel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C, align(32))]
-pub(in crate::engine::cpu) struct F32x8(pub(in crate::engine::cpu) [f32; LANES]);
+pub(in crate::engine::cpu) struct F32x8<const AVX2: bool>(pub(in crate::engine::cpu) [f32; LANES]);
 
-/// Eight 32-bit integers with wrapping arithmetic.
+/// Eight 32-bit integers with wrapping arithmetic; see [`F32x8`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(C, align(32))]
-pub(in crate::engine::cpu) struct I32x8(pub(in crate::engine::cpu) [i32; LANES]);
+pub(in crate::engine::cpu) struct I32x8<const AVX2: bool>(pub(in crate::engine::cpu) [i32; LANES]);
 
-/// Eight truth values, all bits set or none.
+/// Eight truth values, all bits set or none; see [`F32x8`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(C, align(32))]
-pub(in crate::engine::cpu) struct Mask8([i32; LANES]);
+pub(in crate::engine::cpu) struct Mask8<const AVX2: bool>([i32; LANES]);
+
+/// The AVX2 form of an operation, or its lane by lane form.
+macro_rules! either {
+    (avx2: $vector:expr, lanes: $lanes:expr $(,)?) => {{
+        #[cfg(target_arch = "x86_64")]
+        {
+            if AVX2 {
+                #[expect(unsafe_code, reason = "vector instructions of a detected processor")]
+                // SAFETY: lanes with AVX2 set are computed with only in the AVX2 form of kernels,
+                // which run only where it was detected; the types on both sides are 32 bytes of
+                // numbers for which every bit pattern is valid.
+                return unsafe { $vector };
+            }
+        }
+        $lanes
+    }};
+}
+
+/// Vector registers as lanes and back.
+#[cfg(target_arch = "x86_64")]
+use std::{arch::x86_64 as arch, mem::transmute as cast};
 
 macro_rules! binary {
-    ($t:ident, $trait:ident, $f:ident, $zero:expr, $a:ident, $b:ident => $e:expr) => {
-        impl $trait for $t {
+    ($t:ident, $trait:ident, $f:ident, $zero:expr, $instruction:ident, $a:ident, $b:ident => $e:expr) => {
+        impl<const AVX2: bool> $trait for $t<AVX2> {
             type Output = Self;
             #[inline(always)]
             fn $f(self, other: Self) -> Self {
-                Self(lanes!($zero, i => { let ($a, $b) = (self.0[i], other.0[i]); $e }))
+                either! {
+                    avx2: cast(arch::$instruction(cast(self.0), cast(other.0))),
+                    lanes: Self(lanes!($zero, i => { let ($a, $b) = (self.0[i], other.0[i]); $e })),
+                }
             }
         }
     };
 }
-binary!(F32x8, Add, add, 0.0, a, b => a + b);
-binary!(F32x8, Sub, sub, 0.0, a, b => a - b);
-binary!(F32x8, Mul, mul, 0.0, a, b => a * b);
-binary!(F32x8, Div, div, 0.0, a, b => a / b);
-binary!(I32x8, Add, add, 0, a, b => a.wrapping_add(b));
-binary!(I32x8, Sub, sub, 0, a, b => a.wrapping_sub(b));
-binary!(I32x8, Mul, mul, 0, a, b => a.wrapping_mul(b));
-binary!(I32x8, BitAnd, bitand, 0, a, b => a & b);
-binary!(I32x8, BitOr, bitor, 0, a, b => a | b);
-binary!(Mask8, BitAnd, bitand, 0, a, b => a & b);
-binary!(Mask8, BitOr, bitor, 0, a, b => a | b);
+binary!(F32x8, Add, add, 0.0, _mm256_add_ps, a, b => a + b);
+binary!(F32x8, Sub, sub, 0.0, _mm256_sub_ps, a, b => a - b);
+binary!(F32x8, Mul, mul, 0.0, _mm256_mul_ps, a, b => a * b);
+binary!(F32x8, Div, div, 0.0, _mm256_div_ps, a, b => a / b);
+binary!(I32x8, Add, add, 0, _mm256_add_epi32, a, b => a.wrapping_add(b));
+binary!(I32x8, Sub, sub, 0, _mm256_sub_epi32, a, b => a.wrapping_sub(b));
+binary!(I32x8, Mul, mul, 0, _mm256_mullo_epi32, a, b => a.wrapping_mul(b));
+binary!(I32x8, BitAnd, bitand, 0, _mm256_and_si256, a, b => a & b);
+binary!(I32x8, BitOr, bitor, 0, _mm256_or_si256, a, b => a | b);
+binary!(Mask8, BitAnd, bitand, 0, _mm256_and_si256, a, b => a & b);
+binary!(Mask8, BitOr, bitor, 0, _mm256_or_si256, a, b => a | b);
 
-impl Neg for F32x8 {
+impl<const AVX2: bool> Neg for F32x8<AVX2> {
     type Output = Self;
     #[inline(always)]
     fn neg(self) -> Self {
-        Self(lanes!(0.0, i => -self.0[i]))
+        either! {
+            avx2: cast(arch::_mm256_xor_ps(cast(self.0), arch::_mm256_set1_ps(-0.0))),
+            lanes: Self(lanes!(0.0, i => -self.0[i])),
+        }
     }
 }
 
-impl Shl<u32> for I32x8 {
+impl<const AVX2: bool> Shl<u32> for I32x8<AVX2> {
     type Output = Self;
+    /// By less than 32 bits.
     #[inline(always)]
     fn shl(self, bits: u32) -> Self {
-        Self(lanes!(0, i => self.0[i].wrapping_shl(bits)))
+        either! {
+            avx2: cast(arch::_mm256_sll_epi32(cast(self.0), arch::_mm_cvtsi32_si128(bits as i32))),
+            lanes: Self(lanes!(0, i => self.0[i].wrapping_shl(bits))),
+        }
     }
 }
 
-impl Shr<u32> for I32x8 {
+impl<const AVX2: bool> Shr<u32> for I32x8<AVX2> {
     type Output = Self;
+    /// By less than 32 bits, keeping the sign.
     #[inline(always)]
     fn shr(self, bits: u32) -> Self {
-        Self(lanes!(0, i => self.0[i].wrapping_shr(bits)))
+        either! {
+            avx2: cast(arch::_mm256_sra_epi32(cast(self.0), arch::_mm_cvtsi32_si128(bits as i32))),
+            lanes: Self(lanes!(0, i => self.0[i].wrapping_shr(bits))),
+        }
     }
 }
 
 /// Adding it to a number below 2^22 leaves the number, rounded, in the low bits.
 const ROUND: f32 = 12_582_912.0;
 
-impl F32x8 {
+/// The smaller of two numbers.
+#[inline(always)]
+fn least(a: f32, b: f32) -> f32 {
+    if a < b { a } else { b }
+}
+
+impl<const AVX2: bool> F32x8<AVX2> {
     pub(in crate::engine::cpu) const ZERO: Self = Self([0.0; LANES]);
     pub(in crate::engine::cpu) const ONE: Self = Self([1.0; LANES]);
 
@@ -157,25 +205,33 @@ impl F32x8 {
     /// The first eight numbers of a slice.
     #[inline(always)]
     pub(in crate::engine::cpu) fn load(from: &[f32]) -> Self {
-        let from = &from[..LANES];
-        Self(lanes!(0.0, i => from[i]))
+        let from: &[f32; LANES] = from.first_chunk().expect("at least eight numbers");
+        Self(*from)
     }
 
     #[inline(always)]
     pub(in crate::engine::cpu) fn store(self, to: &mut [f32]) {
-        to[..LANES].copy_from_slice(&self.0);
+        *to.first_chunk_mut().expect("room for eight numbers") = self.0;
     }
 
     /// The smaller number; the other's where `self` is NaN.
     #[inline(always)]
     pub(in crate::engine::cpu) fn min(self, other: Self) -> Self {
-        Self(lanes!(0.0, i => if self.0[i] < other.0[i] { self.0[i] } else { other.0[i] }))
+        either! {
+            avx2: cast(arch::_mm256_min_ps(cast(self.0), cast(other.0))),
+            lanes: Self(lanes!(0.0, i => least(self.0[i], other.0[i]))),
+        }
     }
 
     /// The larger number; the other's where `self` is NaN.
     #[inline(always)]
     pub(in crate::engine::cpu) fn max(self, other: Self) -> Self {
-        Self(lanes!(0.0, i => if self.0[i] > other.0[i] { self.0[i] } else { other.0[i] }))
+        either! {
+            avx2: cast(arch::_mm256_max_ps(cast(self.0), cast(other.0))),
+            lanes: Self(lanes!(0.0, i => {
+                if self.0[i] > other.0[i] { self.0[i] } else { other.0[i] }
+            })),
+        }
     }
 
     /// Within two bounds; the lower one for NaN.
@@ -186,49 +242,70 @@ impl F32x8 {
 
     #[inline(always)]
     pub(in crate::engine::cpu) fn sqrt(self) -> Self {
-        Self(lanes!(0.0, i => self.0[i].sqrt()))
+        either! {
+            avx2: cast(arch::_mm256_sqrt_ps(cast(self.0))),
+            lanes: Self(lanes!(0.0, i => self.0[i].sqrt())),
+        }
     }
 
     #[inline(always)]
-    pub(in crate::engine::cpu) fn gt(self, other: Self) -> Mask8 {
-        Mask8(lanes!(0, i => -i32::from(self.0[i] > other.0[i])))
+    pub(in crate::engine::cpu) fn gt(self, other: Self) -> Mask8<AVX2> {
+        either! {
+            avx2: cast(arch::_mm256_cmp_ps::<{ arch::_CMP_GT_OQ }>(cast(self.0), cast(other.0))),
+            lanes: Mask8(lanes!(0, i => -i32::from(self.0[i] > other.0[i]))),
+        }
     }
 
     #[inline(always)]
-    pub(in crate::engine::cpu) fn ge(self, other: Self) -> Mask8 {
-        Mask8(lanes!(0, i => -i32::from(self.0[i] >= other.0[i])))
+    pub(in crate::engine::cpu) fn ge(self, other: Self) -> Mask8<AVX2> {
+        either! {
+            avx2: cast(arch::_mm256_cmp_ps::<{ arch::_CMP_GE_OQ }>(cast(self.0), cast(other.0))),
+            lanes: Mask8(lanes!(0, i => -i32::from(self.0[i] >= other.0[i]))),
+        }
     }
 
     /// The nearest integer, for magnitudes below 2^22; harmless nonsense beyond.
     #[inline(always)]
-    pub(in crate::engine::cpu) fn round_i32(self) -> I32x8 {
-        I32x8(lanes!(0, i => {
-            ((self.0[i] + ROUND).to_bits() as i32).wrapping_sub(ROUND.to_bits() as i32)
-        }))
+    pub(in crate::engine::cpu) fn round_i32(self) -> I32x8<AVX2> {
+        (self + Self::splat(ROUND)).to_bits() - I32x8::splat(ROUND.to_bits() as i32)
     }
 
     /// The largest integer not above, for magnitudes below 2^22; harmless nonsense beyond.
     #[inline(always)]
     pub(in crate::engine::cpu) fn floor(self) -> Self {
-        Self(lanes!(0.0, i => {
-            let rounded = (self.0[i] + ROUND) - ROUND;
-            rounded - if rounded > self.0[i] { 1.0 } else { 0.0 }
-        }))
+        let round = Self::splat(ROUND);
+        let rounded = (self + round) - round;
+        rounded - rounded.gt(self).select(Self::ONE, Self::ZERO)
     }
 
     /// The bits as integers.
     #[inline(always)]
-    pub(in crate::engine::cpu) fn to_bits(self) -> I32x8 {
-        I32x8(lanes!(0, i => self.0[i].to_bits() as i32))
+    pub(in crate::engine::cpu) fn to_bits(self) -> I32x8<AVX2> {
+        either! {
+            avx2: cast(self),
+            lanes: I32x8(lanes!(0, i => self.0[i].to_bits() as i32)),
+        }
     }
 
     /// The smallest of the eight.
     #[inline(always)]
     pub(in crate::engine::cpu) fn smallest(self) -> f32 {
-        let v = self.0;
-        let least = |a: f32, b: f32| if a < b { a } else { b };
-        let half = [least(v[0], v[4]), least(v[1], v[5]), least(v[2], v[6]), least(v[3], v[7])];
-        least(least(half[0], half[2]), least(half[1], half[3]))
+        either! {
+            avx2: {
+                let v: arch::__m256 = cast(self.0);
+                let low = arch::_mm256_castps256_ps128(v);
+                let half = arch::_mm_min_ps(low, arch::_mm256_extractf128_ps::<1>(v));
+                let pair = arch::_mm_min_ps(half, arch::_mm_movehl_ps(half, half));
+                let odd = arch::_mm_shuffle_ps::<1>(pair, pair);
+                arch::_mm_cvtss_f32(arch::_mm_min_ss(pair, odd))
+            },
+            lanes: {
+                let v = self.0;
+                let half =
+                    [least(v[0], v[4]), least(v[1], v[5]), least(v[2], v[6]), least(v[3], v[7])];
+                least(least(half[0], half[2]), least(half[1], half[3]))
+            },
+        }
     }
 
     /// The largest of the eight.
@@ -244,7 +321,7 @@ impl F32x8 {
     }
 }
 
-impl I32x8 {
+impl<const AVX2: bool> I32x8<AVX2> {
     pub(in crate::engine::cpu) const ZERO: Self = Self([0; LANES]);
 
     #[inline(always)]
@@ -253,62 +330,94 @@ impl I32x8 {
     }
 
     #[inline(always)]
-    pub(in crate::engine::cpu) fn gt(self, other: Self) -> Mask8 {
-        Mask8(lanes!(0, i => -i32::from(self.0[i] > other.0[i])))
+    pub(in crate::engine::cpu) fn gt(self, other: Self) -> Mask8<AVX2> {
+        either! {
+            avx2: cast(arch::_mm256_cmpgt_epi32(cast(self.0), cast(other.0))),
+            lanes: Mask8(lanes!(0, i => -i32::from(self.0[i] > other.0[i]))),
+        }
     }
 
-    /// Shifts every lane by its own number of bits.
+    /// Shifts every lane by the lowest five bits of another.
     #[inline(always)]
     pub(in crate::engine::cpu) fn shl_each(self, bits: Self) -> Self {
-        Self(lanes!(0, i => self.0[i].wrapping_shl(bits.0[i] as u32)))
+        let bits = bits & Self::splat(31);
+        either! {
+            avx2: cast(arch::_mm256_sllv_epi32(cast(self.0), cast(bits.0))),
+            lanes: Self(lanes!(0, i => self.0[i].wrapping_shl(bits.0[i] as u32))),
+        }
     }
 
     #[inline(always)]
-    pub(in crate::engine::cpu) fn to_f32(self) -> F32x8 {
-        F32x8(lanes!(0.0, i => self.0[i] as f32))
+    pub(in crate::engine::cpu) fn to_f32(self) -> F32x8<AVX2> {
+        either! {
+            avx2: cast(arch::_mm256_cvtepi32_ps(cast(self.0))),
+            lanes: F32x8(lanes!(0.0, i => self.0[i] as f32)),
+        }
     }
 }
 
-impl Mask8 {
+impl<const AVX2: bool> Mask8<AVX2> {
     /// The first value where set, the second elsewhere.
     #[inline(always)]
-    pub(in crate::engine::cpu) fn select(self, set: F32x8, unset: F32x8) -> F32x8 {
-        F32x8(lanes!(0.0, i => {
-            let mask = self.0[i] as u32;
-            f32::from_bits((set.0[i].to_bits() & mask) | (unset.0[i].to_bits() & !mask))
-        }))
+    pub(in crate::engine::cpu) fn select(
+        self,
+        set: F32x8<AVX2>,
+        unset: F32x8<AVX2>,
+    ) -> F32x8<AVX2> {
+        either! {
+            avx2: cast(arch::_mm256_blendv_ps(cast(unset.0), cast(set.0), cast(self.0))),
+            lanes: F32x8(lanes!(0.0, i => {
+                let mask = self.0[i] as u32;
+                f32::from_bits((set.0[i].to_bits() & mask) | (unset.0[i].to_bits() & !mask))
+            })),
+        }
     }
 
     /// The first value where set, the second elsewhere, for unsigned integers.
     #[inline(always)]
     pub(in crate::engine::cpu) fn select_u32(self, set: u32, unset: [u32; LANES]) -> [u32; LANES] {
-        lanes!(0, i => {
-            let mask = self.0[i] as u32;
-            (set & mask) | (unset[i] & !mask)
-        })
+        either! {
+            avx2: {
+                let set = arch::_mm256_set1_epi32(set as i32);
+                cast(arch::_mm256_blendv_epi8(cast(unset), set, cast(self.0)))
+            },
+            lanes: lanes!(0, i => {
+                let mask = self.0[i] as u32;
+                (set & mask) | (unset[i] & !mask)
+            }),
+        }
     }
 
     #[inline(always)]
     pub(in crate::engine::cpu) fn any(self) -> bool {
-        let m = self.0;
-        ((m[0] | m[4]) | (m[1] | m[5])) | ((m[2] | m[6]) | (m[3] | m[7])) != 0
+        either! {
+            avx2: arch::_mm256_movemask_ps(cast(self.0)) != 0,
+            lanes: {
+                let m = self.0;
+                ((m[0] | m[4]) | (m[1] | m[5])) | ((m[2] | m[6]) | (m[3] | m[7])) != 0
+            },
+        }
     }
 }
 
 /// Eight vectors.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(in crate::engine::cpu) struct Vec3x8 {
-    pub(in crate::engine::cpu) x: F32x8,
-    pub(in crate::engine::cpu) y: F32x8,
-    pub(in crate::engine::cpu) z: F32x8,
+pub(in crate::engine::cpu) struct Vec3x8<const AVX2: bool> {
+    pub(in crate::engine::cpu) x: F32x8<AVX2>,
+    pub(in crate::engine::cpu) y: F32x8<AVX2>,
+    pub(in crate::engine::cpu) z: F32x8<AVX2>,
 }
 
-impl Vec3x8 {
+impl<const AVX2: bool> Vec3x8<AVX2> {
     pub(in crate::engine::cpu) const ZERO: Self =
         Self { x: F32x8::ZERO, y: F32x8::ZERO, z: F32x8::ZERO };
 
     #[inline(always)]
-    pub(in crate::engine::cpu) const fn new(x: F32x8, y: F32x8, z: F32x8) -> Self {
+    pub(in crate::engine::cpu) const fn new(
+        x: F32x8<AVX2>,
+        y: F32x8<AVX2>,
+        z: F32x8<AVX2>,
+    ) -> Self {
         Self { x, y, z }
     }
 
@@ -318,7 +427,7 @@ impl Vec3x8 {
     }
 
     #[inline(always)]
-    pub(in crate::engine::cpu) fn dot(self, o: Self) -> F32x8 {
+    pub(in crate::engine::cpu) fn dot(self, o: Self) -> F32x8<AVX2> {
         self.x * o.x + self.y * o.y + self.z * o.z
     }
 
@@ -332,7 +441,7 @@ impl Vec3x8 {
     }
 
     #[inline(always)]
-    pub(in crate::engine::cpu) fn scale(self, s: F32x8) -> Self {
+    pub(in crate::engine::cpu) fn scale(self, s: F32x8<AVX2>) -> Self {
         Self { x: self.x * s, y: self.y * s, z: self.z * s }
     }
 
@@ -344,12 +453,12 @@ impl Vec3x8 {
     }
 
     #[inline(always)]
-    pub(in crate::engine::cpu) fn mix(self, o: Self, t: F32x8) -> Self {
+    pub(in crate::engine::cpu) fn mix(self, o: Self, t: F32x8<AVX2>) -> Self {
         self + (o - self).scale(t)
     }
 }
 
-impl Add for Vec3x8 {
+impl<const AVX2: bool> Add for Vec3x8<AVX2> {
     type Output = Self;
     #[inline(always)]
     fn add(self, o: Self) -> Self {
@@ -357,7 +466,7 @@ impl Add for Vec3x8 {
     }
 }
 
-impl Sub for Vec3x8 {
+impl<const AVX2: bool> Sub for Vec3x8<AVX2> {
     type Output = Self;
     #[inline(always)]
     fn sub(self, o: Self) -> Self {
@@ -365,7 +474,7 @@ impl Sub for Vec3x8 {
     }
 }
 
-impl Mul for Vec3x8 {
+impl<const AVX2: bool> Mul for Vec3x8<AVX2> {
     type Output = Self;
     #[inline(always)]
     fn mul(self, o: Self) -> Self {
@@ -379,14 +488,14 @@ mod tests {
 
     #[test]
     fn rounding_and_floor_are_exact_on_both_sides_of_zero() {
-        let v = F32x8([-2.5, -1.0, -0.25, 0.0, 0.25, 1.75, 4_000_000.0, -4_000_000.0]);
+        let v = F32x8::<false>([-2.5, -1.0, -0.25, 0.0, 0.25, 1.75, 4_000_000.0, -4_000_000.0]);
         assert_eq!(v.floor().0, [-3.0, -1.0, -1.0, 0.0, 0.0, 1.0, 4_000_000.0, -4_000_000.0]);
         assert_eq!(v.round_i32().0, [-2, -1, 0, 0, 0, 2, 4_000_000, -4_000_000]);
     }
 
     #[test]
     fn clamping_turns_nan_into_the_lower_bound() {
-        assert_eq!(F32x8::splat(f32::NAN).clamp(0.0, 1.0), F32x8::ZERO);
+        assert_eq!(F32x8::<false>::splat(f32::NAN).clamp(0.0, 1.0), F32x8::ZERO);
     }
 
     #[test]
@@ -394,9 +503,59 @@ mod tests {
         for lane in 0..LANES {
             let mut v = [0.5; LANES];
             v[lane] = -3.0;
-            assert_eq!(F32x8(v).smallest(), -3.0);
+            assert_eq!(F32x8::<false>(v).smallest(), -3.0);
             v[lane] = 7.0;
-            assert_eq!(F32x8(v).largest(), 7.0);
+            assert_eq!(F32x8::<false>(v).largest(), 7.0);
+        }
+    }
+
+    kernel! {
+        /// The bits that every operation makes of two vectors.
+        fn every_operation(a: [f32; LANES], b: [f32; LANES], out: &mut Vec<[u32; LANES]>)
+            = every_operation_body
+    }
+
+    #[inline(always)]
+    fn every_operation_body<const AVX2: bool>(
+        a: [f32; LANES],
+        b: [f32; LANES],
+        out: &mut Vec<[u32; LANES]>,
+    ) {
+        let (a, b) = (F32x8::<AVX2>(a), F32x8::<AVX2>(b));
+        for v in [a + b, a - b, a * b, a / b, -a, a.min(b), a.max(b), a.sqrt(), a.floor()] {
+            out.push(v.0.map(f32::to_bits));
+        }
+        let (mask, other) = (a.gt(b), a.ge(b));
+        out.push(mask.select(a, b).0.map(f32::to_bits));
+        out.push((mask | other).select(a, b).0.map(f32::to_bits));
+        out.push((mask & other).select_u32(7, [9; LANES]));
+        out.push([u32::from(mask.any()); LANES]);
+        out.push([a.smallest().to_bits(); LANES]);
+        out.push([a.largest().to_bits(); LANES]);
+        let (i, j) = (a.round_i32(), b.to_bits());
+        let integers =
+            [i, j, i + j, i - j, i * j, i & j, i | j, j << 5, j >> 7, i.shl_each(j >> 20)];
+        out.extend(integers.map(|v| v.0.map(|lane| lane as u32)));
+        out.push(i.to_f32().0.map(f32::to_bits));
+        out.push(i.gt(j).select(a, b).0.map(f32::to_bits));
+    }
+
+    #[test]
+    fn both_forms_of_every_operation_give_the_same_bits() {
+        let odd = [0.0, -0.0, 1.5, -2.25, 1e30, -1e-30, 4e6, 0.1];
+        for turn in 0..LANES {
+            let mut other = odd;
+            other.rotate_left(turn);
+            let (mut plain, mut best) = (Vec::new(), Vec::new());
+            every_operation(Level::BASELINE, odd, other, &mut plain);
+            every_operation(Level::detect(), odd, other, &mut best);
+            for (operation, (a, b)) in plain.iter().zip(&best).enumerate() {
+                for lane in 0..LANES {
+                    let both_nan =
+                        f32::from_bits(a[lane]).is_nan() && f32::from_bits(b[lane]).is_nan();
+                    assert!(a[lane] == b[lane] || both_nan, "operation {operation}, lane {lane}");
+                }
+            }
         }
     }
 }

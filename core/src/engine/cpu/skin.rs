@@ -184,7 +184,7 @@ kernel! {
 }
 
 #[inline(always)]
-fn move_body<const NORMALS: bool>(
+fn move_body<const AVX2: bool, const NORMALS: bool>(
     mesh: &Mesh,
     motion: &Motion<'_>,
     first: usize,
@@ -194,7 +194,7 @@ fn move_body<const NORMALS: bool>(
 ) -> bool {
     let last = mesh.positions.len() - 1;
     // Zero times anything finite: a number that is not stays visible in the sum.
-    let mut zero = F32x8::ZERO;
+    let mut zero = F32x8::<AVX2>::ZERO;
     let blocks = vertices.chunks_exact_mut(LANES).zip(screen.chunks_exact_mut(LANES));
     for (block, (vertices, screen)) in blocks.enumerate() {
         let (mut p, mut n) = ([[0.0; LANES]; 3], [[0.0; LANES]; 3]);

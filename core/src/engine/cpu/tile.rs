@@ -234,7 +234,7 @@ impl TilePass<'_> {
     /// A view-space box round everything that a tile shows; nothing if it shows nothing.
     fn tile_box(&self, origin_px: [u32; 2], depth: &[f32]) -> Option<([f32; 3], [f32; 3])> {
         let view = &self.list.view;
-        let (mut far, mut near) = (F32x8::splat(f32::MAX), F32x8::ZERO);
+        let (mut far, mut near) = (F32x8::<false>::splat(f32::MAX), F32x8::ZERO);
         for eight in depth.chunks_exact(LANES) {
             let z = F32x8::load(eight);
             near = near.max(z);

@@ -85,14 +85,14 @@ impl<'a> Lighting<'a> {
 
     /// Light that eight fragments send to the camera, times the exposure.
     #[inline(always)]
-    pub(super) fn reflected(
+    pub(super) fn reflected<const AVX2: bool>(
         &self,
-        position: Vec3x8,
-        surface_normal: Vec3x8,
-        look: &Look,
+        position: Vec3x8<AVX2>,
+        surface_normal: Vec3x8<AVX2>,
+        look: &Look<AVX2>,
         (metallic, wrap): (f32, f32),
         reaching: &[u32],
-    ) -> Vec3x8 {
+    ) -> Vec3x8<AVX2> {
         let reflector = Reflector::new(position, look, metallic, wrap);
         let mut sum = self.surrounding(&reflector, look.roughness);
         if let Some((direction, color)) = self.sun {
@@ -120,16 +120,25 @@ impl<'a> Lighting<'a> {
 
     /// Sky and ground.
     #[inline(always)]
-    fn surrounding(&self, r: &Reflector, roughness: F32x8) -> Vec3x8 {
-        let (half, up) = (F32x8::splat(0.5), Vec3x8::splat(self.up));
-        let (ground, sky) = (Vec3x8::splat(self.ground), Vec3x8::splat(self.sky));
-        let irradiance = |d: Vec3x8| ground.mix(sky, (d.dot(up) * half + half).clamp(0.0, 1.0));
+    fn surrounding<const AVX2: bool>(
+        &self,
+        r: &Reflector<AVX2>,
+        roughness: F32x8<AVX2>,
+    ) -> Vec3x8<AVX2> {
         let mirrored = r.normal.scale(r.n_dot_v + r.n_dot_v) - r.to_viewer;
         let [scale, bias] = split_sum(roughness, r.n_dot_v);
         let bias = Vec3x8::new(bias, bias, bias);
         let mirror = r.f0.scale(scale) + bias;
-        irradiance(r.normal) * r.diffuse
-            + (irradiance(mirrored) * mirror).scale(F32x8::splat(1.0 / PI))
+        self.hemisphere(r.normal) * r.diffuse
+            + (self.hemisphere(mirrored) * mirror).scale(F32x8::splat(1.0 / PI))
+    }
+
+    /// Irradiance of surfaces that face these directions.
+    #[inline(always)]
+    fn hemisphere<const AVX2: bool>(&self, d: Vec3x8<AVX2>) -> Vec3x8<AVX2> {
+        let half = F32x8::splat(0.5);
+        let upwards = (d.dot(Vec3x8::splat(self.up)) * half + half).clamp(0.0, 1.0);
+        Vec3x8::splat(self.ground).mix(Vec3x8::splat(self.sky), upwards)
     }
 }
 
@@ -140,7 +149,10 @@ fn unit(v: [f32; 3]) -> [f32; 3] {
 
 /// Direction towards a point light and the illuminance of a surface that faces it.
 #[inline(always)]
-fn incoming(light: &PointLight, position: Vec3x8) -> (Vec3x8, Vec3x8) {
+fn incoming<const AVX2: bool>(
+    light: &PointLight,
+    position: Vec3x8<AVX2>,
+) -> (Vec3x8<AVX2>, Vec3x8<AVX2>) {
     let to_light = Vec3x8::splat(light.position) - position;
     let distance2 = to_light.dot(to_light).max(F32x8::splat(1e-12));
     let inverse = F32x8::ONE / distance2.sqrt();
@@ -154,7 +166,7 @@ fn incoming(light: &PointLight, position: Vec3x8) -> (Vec3x8, Vec3x8) {
 
 /// Factor on f0 and offset of the surrounding's mirror term.
 #[inline(always)]
-fn split_sum(roughness: F32x8, n_dot_v: F32x8) -> [F32x8; 2] {
+fn split_sum<const AVX2: bool>(roughness: F32x8<AVX2>, n_dot_v: F32x8<AVX2>) -> [F32x8<AVX2>; 2] {
     let s = F32x8::splat;
     let (x, y) = (F32x8::ONE - roughness, s(0.0425) - roughness * s(0.0275));
     let (z, w) = (s(1.04) - roughness * s(0.572), roughness * s(0.022) - s(0.04));
@@ -165,21 +177,21 @@ fn split_sum(roughness: F32x8, n_dot_v: F32x8) -> [F32x8; 2] {
 }
 
 /// What the reflectance needs of eight fragments, whatever the light.
-struct Reflector {
-    normal: Vec3x8,
-    to_viewer: Vec3x8,
-    n_dot_v: F32x8,
-    f0: Vec3x8,
+struct Reflector<const AVX2: bool> {
+    normal: Vec3x8<AVX2>,
+    to_viewer: Vec3x8<AVX2>,
+    n_dot_v: F32x8<AVX2>,
+    f0: Vec3x8<AVX2>,
     /// Lambert term over irradiance.
-    diffuse: Vec3x8,
+    diffuse: Vec3x8<AVX2>,
     /// Squared perceptual roughness.
-    a: F32x8,
+    a: F32x8<AVX2>,
     wrap: f32,
 }
 
-impl Reflector {
+impl<const AVX2: bool> Reflector<AVX2> {
     #[inline(always)]
-    fn new(position: Vec3x8, look: &Look, metallic: f32, wrap: f32) -> Self {
+    fn new(position: Vec3x8<AVX2>, look: &Look<AVX2>, metallic: f32, wrap: f32) -> Self {
         let to_viewer = (Vec3x8::ZERO - position).normalized();
         let dielectric = Vec3x8::splat([0.04; 3]);
         Self {
@@ -195,13 +207,13 @@ impl Reflector {
 
     /// Whether light from a direction can reach any of the eight.
     #[inline(always)]
-    fn reached_from(&self, to_light: Vec3x8) -> bool {
+    fn reached_from(&self, to_light: Vec3x8<AVX2>) -> bool {
         self.normal.dot(to_light).gt(F32x8::splat(-self.wrap)).any()
     }
 
     /// Light sent to the viewer, given the illuminance of a surface that faces the light.
     #[inline(always)]
-    fn reflect(&self, to_light: Vec3x8, illuminance: Vec3x8) -> Vec3x8 {
+    fn reflect(&self, to_light: Vec3x8<AVX2>, illuminance: Vec3x8<AVX2>) -> Vec3x8<AVX2> {
         let s = F32x8::splat;
         let cosine = self.normal.dot(to_light);
         let n_dot_l = cosine.max(F32x8::ZERO);

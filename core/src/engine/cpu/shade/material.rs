@@ -24,13 +24,13 @@ pub(in crate::engine::cpu) struct Surface<'a> {
 }
 
 /// What light sees of eight fragments.
-pub(super) struct Look {
+pub(super) struct Look<const AVX2: bool> {
     /// Linear.
-    pub(super) albedo: Vec3x8,
+    pub(super) albedo: Vec3x8<AVX2>,
     /// Perceptual.
-    pub(super) roughness: F32x8,
+    pub(super) roughness: F32x8<AVX2>,
     /// Unit, view space.
-    pub(super) normal: Vec3x8,
+    pub(super) normal: Vec3x8<AVX2>,
 }
 
 impl<'a> Surface<'a> {
@@ -47,7 +47,7 @@ impl<'a> Surface<'a> {
         let albedo_map = sampler(material.albedo_map);
         let mut base_color = material.base_color;
         if let (Some(turn), None) = (hue_offset, &albedo_map) {
-            let rotated = rotate_hue(Vec3x8::splat(base_color), turn);
+            let rotated = rotate_hue(Vec3x8::<false>::splat(base_color), turn);
             base_color = [rotated.x.0[0], rotated.y.0[0], rotated.z.0[0]];
         }
         Self {
@@ -77,7 +77,7 @@ impl<'a> Surface<'a> {
 
     /// The material at eight fragments whose normals face the viewer.
     #[inline(always)]
-    pub(super) fn look(&self, points: &Points) -> Look {
+    pub(super) fn look<const AVX2: bool>(&self, points: &Points<AVX2>) -> Look<AVX2> {
         let mut look = Look {
             albedo: Vec3x8::splat(self.base_color),
             roughness: F32x8::splat(self.roughness),
@@ -87,7 +87,7 @@ impl<'a> Surface<'a> {
             self.apply_repeated(texture, &mut look);
             if let Some(mask) = &self.mask {
                 let size = footprint(texture.d_dx, texture.d_dy);
-                self.apply_layers(mask.sample::<4>(texture.uv, size), &mut look);
+                self.apply_layers(mask.sample::<AVX2, 4>(texture.uv, size), &mut look);
             }
         }
         look
@@ -95,50 +95,67 @@ impl<'a> Surface<'a> {
 
     /// Albedo, detail and normal map, which share the repeated coordinates.
     #[inline(always)]
-    fn apply_repeated(&self, texture: &TexturePoints, look: &mut Look) {
-        let repeat = self.uv_repeat.map(F32x8::splat);
-        let repeated = |v: [F32x8; 2]| [v[0] * repeat[0], v[1] * repeat[1]];
-        let uv = repeated(texture.uv);
-        let size = footprint(repeated(texture.d_dx), repeated(texture.d_dy));
+    fn apply_repeated<const AVX2: bool>(
+        &self,
+        texture: &TexturePoints<AVX2>,
+        look: &mut Look<AVX2>,
+    ) {
+        let repeat = [F32x8::splat(self.uv_repeat[0]), F32x8::splat(self.uv_repeat[1])];
+        let uv = times(texture.uv, repeat);
+        let size = footprint(times(texture.d_dx, repeat), times(texture.d_dy, repeat));
         if let Some(map) = &self.albedo_map {
-            let [r, g, b] = map.sample::<3>(uv, size);
+            let [r, g, b] = map.sample::<AVX2, 3>(uv, size);
             look.albedo = look.albedo * Vec3x8::new(r, g, b);
             if let Some(turn) = self.hue_offset {
                 look.albedo = rotate_hue(look.albedo, turn);
             }
         }
         if let Some((map, strength)) = &self.detail {
-            let [r] = map.sample::<1>(uv, size);
+            let [r] = map.sample::<AVX2, 1>(uv, size);
             let factor = F32x8::ONE + F32x8::splat(*strength) * (r + r - F32x8::ONE);
             look.albedo = look.albedo.scale(factor.max(F32x8::ZERO));
         }
         if let Some((map, strength)) = &self.normal_map {
-            let [x, y, z] = map.sample::<3>(uv, size);
-            let signed = |v: F32x8| v + v - F32x8::ONE;
-            let strength = F32x8::splat(*strength);
-            let bend = [signed(x) * strength, signed(y) * strength];
-            look.normal = bent(look.normal, bend, signed(z), texture);
+            let [x, y, z] = map.sample::<AVX2, 3>(uv, size);
+            let (one, strength) = (F32x8::ONE, F32x8::splat(*strength));
+            let bend = [(x + x - one) * strength, (y + y - one) * strength];
+            look.normal = bent(look.normal, bend, z + z - one, texture);
         }
     }
 
     #[inline(always)]
-    fn apply_layers(&self, mask: [F32x8; 4], look: &mut Look) {
-        for (layer, mask) in self.layers.iter().zip(mask) {
-            let color = Vec3x8::splat([layer[0], layer[1], layer[2]]);
-            look.albedo = look.albedo.mix(color, mask);
-            look.roughness = look.roughness.mix(F32x8::splat(layer[3]), mask);
+    fn apply_layers<const AVX2: bool>(&self, mask: [F32x8<AVX2>; 4], look: &mut Look<AVX2>) {
+        for k in 0..4 {
+            let [r, g, b, roughness] = self.layers[k];
+            look.albedo = look.albedo.mix(Vec3x8::splat([r, g, b]), mask[k]);
+            look.roughness = look.roughness.mix(F32x8::splat(roughness), mask[k]);
         }
         look.roughness = look.roughness.clamp(0.04, 1.0);
     }
 }
 
+#[inline(always)]
+fn times<const AVX2: bool>(a: [F32x8<AVX2>; 2], b: [F32x8<AVX2>; 2]) -> [F32x8<AVX2>; 2] {
+    [a[0] * b[0], a[1] * b[1]]
+}
+
+/// The unit direction within the surface that is nearest to a direction.
+#[inline(always)]
+fn onto_surface<const AVX2: bool>(d: Vec3x8<AVX2>, normal: Vec3x8<AVX2>) -> Vec3x8<AVX2> {
+    (d - normal.scale(d.dot(normal))).normalized()
+}
+
 /// A normal turned by a tangent-space one: x along growing u, y up the picture (against v), z
 /// along the normal.
 #[inline(always)]
-fn bent(normal: Vec3x8, [x, y]: [F32x8; 2], z: F32x8, texture: &TexturePoints) -> Vec3x8 {
-    let onto_surface = |d: Vec3x8| (d - normal.scale(d.dot(normal))).normalized();
-    let tangent = onto_surface(texture.tangent);
-    let bitangent = onto_surface(texture.bitangent);
+fn bent<const AVX2: bool>(
+    normal: Vec3x8<AVX2>,
+    [x, y]: [F32x8<AVX2>; 2],
+    z: F32x8<AVX2>,
+    texture: &TexturePoints<AVX2>,
+) -> Vec3x8<AVX2> {
+    let tangent = onto_surface(texture.tangent, normal);
+    let bitangent = onto_surface(texture.bitangent, normal);
     (tangent.scale(x) - bitangent.scale(y) + normal.scale(z.max(F32x8::splat(0.05)))).normalized()
 }
 
@@ -147,7 +164,7 @@ fn bent(normal: Vec3x8, [x, y]: [F32x8; 2], z: F32x8, texture: &TexturePoints) -
 /// Value V and chroma C give back each channel as `V - C clamp(min(k, 4 - k), 0, 1)` with
 /// `k = (n + hue) mod 6` and n = 5, 3, 1 for red, green and blue.
 #[inline(always)]
-fn rotate_hue(c: Vec3x8, turn: f32) -> Vec3x8 {
+fn rotate_hue<const AVX2: bool>(c: Vec3x8<AVX2>, turn: f32) -> Vec3x8<AVX2> {
     let value = c.x.max(c.y).max(c.z);
     let chroma = value - c.x.min(c.y).min(c.z);
     let inverse = F32x8::ONE / chroma.max(F32x8::splat(1e-12));
@@ -155,12 +172,18 @@ fn rotate_hue(c: Vec3x8, turn: f32) -> Vec3x8 {
     let of_green = (c.z - c.x) * inverse + F32x8::splat(2.0);
     let of_blue = (c.x - c.y) * inverse + F32x8::splat(4.0);
     let hue = c.x.ge(value).select(of_red, c.y.ge(value).select(of_green, of_blue));
-    let channel = |n: f32| {
-        let k = hue + F32x8::splat(n + turn);
-        let k = k - (k * F32x8::splat(1.0 / 6.0)).floor() * F32x8::splat(6.0);
-        value - chroma * k.min(F32x8::splat(4.0) - k).clamp(0.0, 1.0)
-    };
-    Vec3x8::new(channel(5.0), channel(3.0), channel(1.0))
+    let hue = hue + F32x8::splat(turn);
+    let r = value - chroma * hue_share(hue + F32x8::splat(5.0));
+    let g = value - chroma * hue_share(hue + F32x8::splat(3.0));
+    let b = value - chroma * hue_share(hue + F32x8::splat(1.0));
+    Vec3x8::new(r, g, b)
+}
+
+/// `clamp(min(k, 4 - k), 0, 1)` of a number modulo 6.
+#[inline(always)]
+fn hue_share<const AVX2: bool>(k: F32x8<AVX2>) -> F32x8<AVX2> {
+    let k = k - (k * F32x8::splat(1.0 / 6.0)).floor() * F32x8::splat(6.0);
+    k.min(F32x8::splat(4.0) - k).clamp(0.0, 1.0)
 }
 
 #[cfg(test)]
@@ -168,7 +191,7 @@ mod tests {
     use super::*;
 
     fn rotated(rgb: [f32; 3], deg: f32) -> [f32; 3] {
-        let v = rotate_hue(Vec3x8::splat(rgb), deg / 60.0);
+        let v = rotate_hue(Vec3x8::<false>::splat(rgb), deg / 60.0);
         [v.x.0[3], v.y.0[3], v.z.0[3]]
     }
 

@@ -51,7 +51,7 @@ kernel! {
 }
 
 #[inline(always)]
-fn shade_body(
+fn shade_body<const AVX2: bool>(
     stage: &Stage<'_>,
     drawn: DrawnSurface<'_>,
     reaching: &[u32],
@@ -60,7 +60,8 @@ fn shade_body(
 ) {
     let surface = drawn.surface;
     for eight in fragments.chunks_exact(LANES) {
-        let mut points = surface::points(&stage.geometry, &stage.rays, eight, surface.textured());
+        let mut points =
+            surface::points::<AVX2>(&stage.geometry, &stage.rays, eight, surface.textured());
         if drawn.double_sided {
             let turned = Vec3x8::ZERO - points.normal;
             let (away, towards) =
@@ -79,7 +80,7 @@ fn shade_body(
             (surface.metallic, surface.wrap),
             reaching,
         );
-        let channels: [F32x8; 3] = [tone_map(light.x), tone_map(light.y), tone_map(light.z)];
+        let channels: [F32x8<AVX2>; 3] = [tone_map(light.x), tone_map(light.y), tone_map(light.z)];
         for (sum, value) in color.iter_mut().zip(channels) {
             for (fragment, value) in eight.iter().zip(value.0) {
                 sum[usize::from(fragment.slot) & (TILE * TILE - 1)] += value * fragment.weight;

@@ -55,19 +55,23 @@ impl<'a> Sampler<'a> {
     /// The first `C` channels at texture coordinates that wrap; `footprint` is log2 of a pixel's
     /// size in them.
     #[inline(always)]
-    pub(super) fn sample<const C: usize>(&self, uv: [F32x8; 2], footprint: F32x8) -> [F32x8; C] {
+    pub(super) fn sample<const AVX2: bool, const C: usize>(
+        &self,
+        uv: [F32x8<AVX2>; 2],
+        footprint: F32x8<AVX2>,
+    ) -> [F32x8<AVX2>; C] {
         let uv = [uv[0] - uv[0].floor(), uv[1] - uv[1].floor()];
         let top = self.log2_size as f32;
         let level = (footprint + F32x8::splat(top)).clamp(0.0, top);
         let lower = level.floor();
         let between = level - lower;
         let level = lower.round_i32();
-        let mut out = self.bilinear::<C>(uv, level);
+        let mut out = self.bilinear::<AVX2, C>(uv, level);
         if between.gt(F32x8::ZERO).any() {
-            let upper = I32x8(level.0.map(|l| (l + 1).min(self.log2_size)));
-            let coarse = self.bilinear::<C>(uv, upper);
-            for (out, coarse) in out.iter_mut().zip(coarse) {
-                *out = out.mix(coarse, between);
+            // Beyond the last level there is nothing to mix in, and the mask keeps it in bounds.
+            let coarse = self.bilinear::<AVX2, C>(uv, level + I32x8::splat(1));
+            for c in 0..C {
+                out[c] = out[c].mix(coarse[c], between);
             }
         }
         out
@@ -75,7 +79,11 @@ impl<'a> Sampler<'a> {
 
     /// Mixes the four texels round a point of one level.
     #[inline(always)]
-    fn bilinear<const C: usize>(&self, uv: [F32x8; 2], level: I32x8) -> [F32x8; C] {
+    fn bilinear<const AVX2: bool, const C: usize>(
+        &self,
+        uv: [F32x8<AVX2>; 2],
+        level: I32x8<AVX2>,
+    ) -> [F32x8<AVX2>; C] {
         let one = I32x8::splat(1);
         let log2_side = I32x8::splat(self.log2_size) - level;
         let side = one.shl_each(log2_side);
@@ -85,7 +93,7 @@ impl<'a> Sampler<'a> {
         let (left, top) = (x.floor(), y.floor());
         let (wx, wy) = (x - left, y - top);
         let (left, top) = (left.round_i32(), top.round_i32());
-        let mut start = I32x8::ZERO;
+        let mut start = I32x8::<AVX2>::ZERO;
         for lane in 0..LANES {
             start.0[lane] = self.level_start[level.0[lane] as usize & (LEVELS - 1)];
         }
@@ -95,25 +103,27 @@ impl<'a> Sampler<'a> {
             start + ((top + one) & last).shl_each(log2_side),
         ];
         let corners = [
-            self.fetch::<C>(rows[0] + columns[0]),
-            self.fetch::<C>(rows[0] + columns[1]),
-            self.fetch::<C>(rows[1] + columns[0]),
-            self.fetch::<C>(rows[1] + columns[1]),
+            self.fetch::<AVX2, C>(rows[0] + columns[0]),
+            self.fetch::<AVX2, C>(rows[0] + columns[1]),
+            self.fetch::<AVX2, C>(rows[1] + columns[0]),
+            self.fetch::<AVX2, C>(rows[1] + columns[1]),
         ];
-        std::array::from_fn(|c| {
+        let mut out = [F32x8::ZERO; C];
+        for c in 0..C {
             let upper = corners[0][c].mix(corners[1][c], wx);
-            upper.mix(corners[2][c].mix(corners[3][c], wx), wy)
-        })
+            out[c] = upper.mix(corners[2][c].mix(corners[3][c], wx), wy);
+        }
+        out
     }
 
     /// Decoded channels of eight texels.
     #[inline(always)]
-    fn fetch<const C: usize>(&self, index: I32x8) -> [F32x8; C] {
+    fn fetch<const AVX2: bool, const C: usize>(&self, index: I32x8<AVX2>) -> [F32x8<AVX2>; C] {
         let mut out = [F32x8::ZERO; C];
         for lane in 0..LANES {
             let texel = self.texels.get(index.0[lane] as usize).copied().unwrap_or(0);
-            for (c, out) in out.iter_mut().enumerate() {
-                out.0[lane] = self.decode[(texel >> (8 * c) & 255) as usize];
+            for c in 0..C {
+                out[c].0[lane] = self.decode[(texel >> (8 * c) & 255) as usize];
             }
         }
         out
@@ -123,7 +133,10 @@ impl<'a> Sampler<'a> {
 /// log2 of a pixel's size in texture coordinates, from the change of (u, v) over one pixel to the
 /// right and one pixel down: the longer of the two.
 #[inline(always)]
-pub(super) fn footprint(d_dx: [F32x8; 2], d_dy: [F32x8; 2]) -> F32x8 {
+pub(super) fn footprint<const AVX2: bool>(
+    d_dx: [F32x8<AVX2>; 2],
+    d_dy: [F32x8<AVX2>; 2],
+) -> F32x8<AVX2> {
     let x2 = d_dx[0] * d_dx[0] + d_dx[1] * d_dx[1];
     let y2 = d_dy[0] * d_dy[0] + d_dy[1] * d_dy[1];
     log2(x2.max(y2).clamp(1e-20, 1e20)) * F32x8::splat(0.5)
@@ -131,7 +144,7 @@ pub(super) fn footprint(d_dx: [F32x8; 2], d_dy: [F32x8; 2]) -> F32x8 {
 
 /// log2 of positive numbers, to within 0.01: the exponent, and a parabola for the mantissa.
 #[inline(always)]
-fn log2(v: F32x8) -> F32x8 {
+fn log2<const AVX2: bool>(v: F32x8<AVX2>) -> F32x8<AVX2> {
     let bits = v.to_bits();
     let exponent = ((bits >> 23) - I32x8::splat(127)).to_f32();
     let mantissa = (bits & I32x8::splat(0x7f_ffff)).to_f32() * F32x8::splat(1.0 / 8_388_608.0);
@@ -155,7 +168,7 @@ mod tests {
     #[test]
     fn log2_is_close() {
         for v in [1e-6f32, 0.3, 1.0, 1.44, 1.99, 700.0] {
-            assert!((log2(F32x8::splat(v)).0[0] - libm::log2f(v)).abs() < 0.01);
+            assert!((log2(F32x8::<false>::splat(v)).0[0] - libm::log2f(v)).abs() < 0.01);
         }
     }
 
@@ -164,9 +177,11 @@ mod tests {
         let decoding = Decoding::default();
         let texture = stepped(3, Encoding::Srgb);
         let sampler = Sampler::new(&texture, &decoding);
-        let uv = [F32x8::splat(0.3), F32x8::splat(-7.6)];
+        let uv = [F32x8::<false>::splat(0.3), F32x8::<false>::splat(-7.6)];
         // A pixel of 1/4 of the texture: level 1; halfway to 1/2: level 1.5.
-        let at = |footprint: f32| sampler.sample::<1>(uv, F32x8::splat(footprint))[0].0[0];
+        let at = |footprint: f32| {
+            sampler.sample::<false, 1>(uv, F32x8::<false>::splat(footprint))[0].0[0]
+        };
         let of = |byte: f32| linear_from_srgb(byte / 255.0);
         assert!((at(-2.0) - of(64.0)).abs() < 1e-6);
         assert!((at(-1.5) - 0.5 * (of(64.0) + of(128.0))).abs() < 1e-6);
@@ -179,8 +194,8 @@ mod tests {
         let texels: Vec<u32> = (0..16).chain(0..4).chain(0..1).collect();
         let texture = Texture { log2_size: 2, encoding: Encoding::Linear, texels };
         let sampler = Sampler::new(&texture, &decoding);
-        let uv = [F32x8::splat(2.0 + 0.625), F32x8::splat(0.375)]; // column 2, row 1
-        let got = sampler.sample::<1>(uv, F32x8::splat(-8.0))[0].0[0];
+        let uv = [F32x8::<false>::splat(2.0 + 0.625), F32x8::<false>::splat(0.375)]; // column 2, row 1
+        let got = sampler.sample::<false, 1>(uv, F32x8::<false>::splat(-8.0))[0].0[0];
         assert!((got * 255.0 - 6.0).abs() < 1e-4);
     }
 }
