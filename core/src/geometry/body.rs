@@ -185,7 +185,7 @@ impl Needed {
             }
             before += p.len();
         }
-        unreachable!("the figure's tables name only vertices of these prefixes (checked in a test)")
+        unreachable!("loading a figure checks that its tables name only vertices of these prefixes")
     }
 }
 

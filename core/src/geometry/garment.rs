@@ -8,7 +8,7 @@
 use glam::Vec3;
 
 use crate::library::figure::data::LIMB_UNIT;
-use crate::library::figure::{Figure, GroupId};
+use crate::library::figure::{Figure, GroupId, LOD_COUNT};
 use crate::scene::{BottomKind, Outfit};
 
 /// Lower edge of tops on the template, metres above its origin.
@@ -19,8 +19,11 @@ const WAIST_Y: f32 = 0.070;
 const SHOE_M: f32 = 0.009;
 /// Cloth that lies over another keeps this distance.
 const LAYER_M: f32 = 0.005;
-/// Depth under a garment from which skin is never seen.
-const HIDDEN_M: f32 = 0.016;
+/// Depth under a garment from which skin is never seen, by level of detail: less where skin and
+/// cloth follow each other less closely.
+const HIDDEN_M: [f32; LOD_COUNT] = [0.016, 0.016, 0.012, 0.006, 0.002];
+/// How far skin under cloth is drawn inwards, by level of detail.
+const TUCK_M: [f32; LOD_COUNT] = [0.004, 0.004, 0.006, 0.010, 0.016];
 /// Lengths of arm and leg on the template.
 const ARM_M: f32 = 0.42;
 const LEG_M: f32 = 0.80;
@@ -31,6 +34,8 @@ pub(super) struct Fields {
     pub top: f32,
     pub bottom: f32,
     pub shoes: f32,
+    /// How far from any opening: not to be seen from there is also what lies under two garments.
+    pub depth: f32,
 }
 
 /// Place of a vertex on the template.
@@ -74,10 +79,18 @@ impl Cuts {
         let hem = p.y - HEM_Y + on_arm;
         let sleeve = (self.sleeve - arm) * ARM_M;
         let cuff = (self.leg_end - leg) * LEG_M;
+        let neck = self.neck(p);
+        let waist = WAIST_Y - p.y - on_arm;
+        let shoes = -0.732 - 0.15 * p.z.clamp(-0.05, 0.07) - p.y;
+        // Top and trousers close each other's opening at the waist; wide ones can be looked into.
+        let in_top = (hem + 0.03).min(sleeve - 2.0 * self.top_m).min(neck - self.top_m);
+        let deep = if self.trousers { 2.5 } else { 8.0 } * self.bottom_m;
+        let in_bottom = (waist + 0.03).min(cuff - deep).min(p.y + 0.775);
         Fields {
-            top: hem.min(sleeve).min(self.neck(p)),
-            bottom: (WAIST_Y - p.y - on_arm).min(cuff).min(p.y + 0.775),
-            shoes: -0.732 - 0.15 * p.z.clamp(-0.05, 0.07) - p.y,
+            top: hem.min(sleeve).min(neck),
+            bottom: waist.min(cuff).min(p.y + 0.775),
+            shoes,
+            depth: in_top.max(in_bottom).max(shoes),
         }
     }
 
@@ -129,26 +142,28 @@ pub(super) fn fields_between(figure: &Figure, cuts: &Cuts, a: usize, b: usize) -
 }
 
 /// Which of the first `count` skin vertices can never be seen.
-pub(super) fn hidden(figure: &Figure, cuts: &Cuts, fields: &[Fields]) -> Vec<bool> {
-    // Wide openings can be looked into.
-    let (top, bottom) = (HIDDEN_M + 2.0 * cuts.top_m, HIDDEN_M + 2.5 * cuts.bottom_m);
+pub(super) fn hidden(figure: &Figure, fields: &[Fields], lod: usize) -> Vec<bool> {
     fields
         .iter()
         .zip(&figure.data().covered)
-        .map(|(f, &covered)| {
-            covered != 0 && (f.top > top || f.bottom > bottom || f.shoes > HIDDEN_M)
-        })
+        .map(|(f, &covered)| covered != 0 && f.depth > HIDDEN_M[lod])
         .collect()
 }
 
 /// Draws covered skin near a hem a little inwards, so that it never shows through the cloth.
-pub(super) fn tuck(figure: &Figure, fields: &[Fields], skin: &mut [Vec3], normals: &[Vec3]) {
+pub(super) fn tuck(
+    figure: &Figure,
+    fields: &[Fields],
+    lod: usize,
+    skin: &mut [Vec3],
+    normals: &[Vec3],
+) {
     for (((p, n), f), &covered) in
         skin.iter_mut().zip(normals).zip(fields).zip(&figure.data().covered)
     {
         let depth = f.top.max(f.bottom).max(f.shoes);
         if covered != 0 && depth > -0.002 {
-            *p -= *n * (0.004 * step(-0.002, 0.010, depth));
+            *p -= *n * (TUCK_M[lod] * step(-0.002, 0.010, depth));
         }
     }
 }

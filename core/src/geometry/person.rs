@@ -199,8 +199,8 @@ fn add_skin(
     let mut skin = Evaluated::new(figure, rest, GroupId::Skin, lod);
     let count = skin.positions.len() as u32;
     let fields = garment::fields(figure, cuts, GroupId::Skin, count);
-    let hidden = garment::hidden(figure, cuts, &fields);
-    garment::tuck(figure, &fields, &mut skin.positions, &skin.normals);
+    let hidden = garment::hidden(figure, &fields, lod);
+    garment::tuck(figure, &fields, lod, &mut skin.positions, &skin.normals);
     let range = out.builder.add_where(&skin.surface(), |t| !t.iter().all(|&v| hidden[v]));
     out.add(PartKind::Skin, range, false, skin_surface(&person.look));
 }
@@ -284,11 +284,11 @@ fn add_clothes(
         let edge = layers.shoes.iter().map(|p| sign * (p.y - edge_m));
         fields.iter().zip(edge).map(|(f, e)| f.shoes.min(e)).collect()
     };
+    let normals = shell.normals_of(&layers.shoes);
     for (kind, layer, sign, rim, color, roughness) in [
         (PartKind::Shoes, &layers.shoes, 1.0, rim, narrow(shoe), 0.45),
         (PartKind::Soles, &layers.soles, -1.0, None, sole_color(shoe), 0.8),
     ] {
-        let normals = shell.normals_of(layer);
         let range = out.builder.add_cut(&shell.with(layer, &normals), &split(sign), rim);
         out.add(kind, range, true, plain(color, roughness));
     }
@@ -398,4 +398,196 @@ fn sole_color(shoe: [f64; 3]) -> [f32; 3] {
     let shoe = narrow(shoe);
     let light = 0.2126 * shoe[0] + 0.7152 * shoe[1] + 0.0722 * shoe[2];
     if light > 0.25 { tinted(shoe, [0.35, 0.33, 0.32]) } else { mix(shoe, [0.55, 0.53, 0.5], 0.35) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::body::rest_body;
+    use super::super::phenotype::tests::average;
+    use super::*;
+    use crate::scene::{Body, Bottom, BottomKind, Outfit, Placement, Pose, Sex, Shoes, Top};
+    use glam::{DQuat, DVec3};
+
+    fn person(i: usize) -> Person {
+        let x = (i % 4) as f64 / 3.0;
+        let sex = if i.is_multiple_of(2) { Sex::Male } else { Sex::Female };
+        let hair = [
+            HairStyle::Bald,
+            HairStyle::Cropped,
+            HairStyle::Short,
+            HairStyle::Afro,
+            HairStyle::Long,
+        ];
+        let kind = if i.is_multiple_of(3) { BottomKind::Shorts } else { BottomKind::Trousers };
+        let face = vec![("jawOpen".to_owned(), x), ("nose-hump-incr".to_owned(), 0.4)];
+        Person {
+            slot: 0,
+            placement: Placement {
+                position_m: DVec3::ZERO,
+                rotation: DQuat::IDENTITY,
+                scale: DVec3::ONE,
+            },
+            body: Body {
+                age_years: [2.0, 9.0, 35.0, 80.0, 25.0][i % 5],
+                stature_m: [0.88, 1.32, 1.9, 1.6, 1.7][i % 5],
+                muscle: x,
+                weight: [0.1, 0.9, 0.5][i % 3],
+                ancestry: [x, 1.0 - x, 0.3],
+                cup: x,
+                ..average(sex)
+            },
+            look: Look {
+                skin_color: [0.5, 0.3, 0.2],
+                hair: hair[i % 5],
+                hair_color: [0.05; 3],
+                iris_color: [0.1, 0.05, 0.02],
+                face,
+            },
+            outfit: Outfit {
+                top: Top {
+                    sleeve: 0.15 + 0.8 * x,
+                    neckline: 1.0 - x,
+                    looseness_m: 0.004 + 0.02 * x,
+                    color: [0.2, 0.3, 0.6],
+                    texture: None,
+                    hue_offset_deg: 0.0,
+                },
+                bottom: Bottom {
+                    kind,
+                    length: if kind == BottomKind::Shorts { 0.4 } else { 1.0 },
+                    looseness_m: 0.02 * (1.0 - x),
+                    color: [0.1; 3],
+                    texture: None,
+                    hue_offset_deg: 0.0,
+                },
+                shoes: Shoes { color: [0.05; 3] },
+            },
+            pose: Pose { clip: String::new(), phase: 0.0, mirrored: false },
+        }
+    }
+
+    fn dressed(figure: &Figure, i: usize, lod: usize) -> Dressed {
+        let p = person(i);
+        let rest = rest_body(figure, &p.body, &p.look.face).unwrap();
+        dress(figure, &p, &rest, lod)
+    }
+
+    #[test]
+    fn every_mesh_is_sound() {
+        let figure = Figure::built_in().unwrap();
+        for i in 0..10 {
+            for lod in 0..LOD_COUNT {
+                let Dressed { mesh, parts } = dressed(&figure, i, lod);
+                let n = mesh.positions.len();
+                assert!([mesh.normals.len(), mesh.uvs.len(), mesh.skin.len()] == [n; 3]);
+                assert!(mesh.triangles.iter().flatten().all(|&v| (v as usize) < n));
+                assert!(
+                    mesh.positions.iter().chain(&mesh.normals).flatten().all(|x| x.is_finite())
+                );
+                assert!(mesh.uvs.iter().flatten().all(|x| x.is_finite()));
+                for (p, normal) in mesh.positions.iter().zip(&mesh.normals) {
+                    assert!((Vec3::from_array(*normal).length() - 1.0).abs() < 1e-4);
+                    let far = (Vec3::from_array(*p) - Vec3::from_array(mesh.center)).length();
+                    assert!(far <= mesh.radius_m * 1.000_001);
+                }
+                for s in &mesh.skin {
+                    assert_eq!(s.weights.iter().map(|&w| u32::from(w)).sum::<u32>(), 255);
+                }
+                let mut next = 0;
+                for p in &parts {
+                    assert_eq!(p.triangles.start, next);
+                    next = p.triangles.end;
+                }
+                assert_eq!(next as usize, mesh.triangles.len());
+                let low = mesh.positions.iter().map(|p| p[1]).fold(f32::MAX, f32::min);
+                assert!(low.abs() < 1e-4, "soles at {low}");
+            }
+        }
+    }
+
+    #[test]
+    fn coarser_levels_are_smaller_and_of_the_same_parts() {
+        let figure = Figure::built_in().unwrap();
+        let all: Vec<Dressed> = (0..LOD_COUNT).map(|k| dressed(&figure, 2, k)).collect();
+        for pair in all.windows(2) {
+            let size = |d: &Dressed| d.mesh.triangles.len();
+            assert!(
+                size(&pair[1]) * 10 < size(&pair[0]) * 7,
+                "{} {}",
+                size(&pair[0]),
+                size(&pair[1])
+            );
+        }
+        for d in &all[..4] {
+            for kind in [PartKind::Skin, PartKind::Eyes, PartKind::Top, PartKind::Bottom] {
+                assert!(d.parts.iter().any(|p| p.kind == kind), "{kind:?}");
+            }
+        }
+    }
+
+    /// Whether a ray meets a layer's triangles within 20 cm.
+    fn meets(o: Vec3, d: Vec3, shell: &Evaluated<'_>, layer: &[Vec3]) -> bool {
+        shell.triangles.chunks_exact(3).any(|t| {
+            let [a, b, c] =
+                [t[0], t[1], t[2]].map(|r| layer[usize::from(shell.render[usize::from(r)])]);
+            if (a - o).length_squared() > 0.09 {
+                return false;
+            }
+            let (e1, e2) = (b - a, c - a);
+            let h = d.cross(e2);
+            let det = e1.dot(h);
+            let s = (o - a) / det;
+            let (u, q) = (s.dot(h), s.cross(e1));
+            let (v, far) = (d.dot(q), e2.dot(q));
+            det.abs() > 1e-12 && u >= 0.0 && v >= 0.0 && u + v <= 1.0 && (0.0..0.2).contains(&far)
+        })
+    }
+
+    /// Skin that is drawn although it is under a garment lies below the cloth: going out along
+    /// its normal one meets the garment's layer.
+    #[test]
+    fn no_skin_shows_through_the_clothes() {
+        const TOLERANCE_M: f32 = 0.001;
+        let figure = Figure::built_in().unwrap();
+        for i in 0..10 {
+            let p = person(i);
+            let rest = rest_body(&figure, &p.body, &p.look.face).unwrap();
+            let cuts = Cuts::new(&p.outfit);
+            let fields_of = |id, n: usize| garment::fields(&figure, &cuts, id, n as u32);
+            let mut skin = Evaluated::new(&figure, &rest, GroupId::Skin, 0);
+            let on_skin = fields_of(GroupId::Skin, skin.positions.len());
+            let hidden = garment::hidden(&figure, &on_skin, 0);
+            garment::tuck(&figure, &on_skin, 0, &mut skin.positions, &skin.normals);
+            let shell = Evaluated::new(&figure, &rest, GroupId::Shell, 0);
+            let on_shell = fields_of(GroupId::Shell, shell.positions.len());
+            let layers =
+                garment::layers(&figure, &cuts, &on_shell, 0, &shell.positions, &shell.normals);
+            let covered = &figure.data().covered;
+            let (mut seen, mut outside) = (0, 0);
+            // In the fold of the armpit skin meets skin, and the normal leads into the arm.
+            let in_fold = |v: usize| {
+                let t = figure.template();
+                (0.155..0.175).contains(&t.x[v].abs()) && (0.44..0.465).contains(&t.y[v])
+            };
+            let drawn = |v: &usize| !hidden[*v] && covered[*v] != 0 && !in_fold(*v);
+            for v in (0..skin.positions.len()).filter(drawn) {
+                let f = &on_skin[v];
+                let above =
+                    [(f.top, &layers.top), (f.bottom, &layers.bottom), (f.shoes, &layers.shoes)];
+                for (_, layer) in above.into_iter().filter(|a| a.0 > 0.004) {
+                    let (q, n) = (skin.positions[v], skin.normals[v]);
+                    seen += 1;
+                    outside += usize::from(!meets(q - n * TOLERANCE_M, n, &shell, layer));
+                }
+            }
+            assert!(seen > 100, "only {seen} vertices were tested");
+            assert!(outside == 0, "person {i}: {outside} of {seen} vertices outside");
+        }
+    }
+
+    #[test]
+    fn the_same_person_gives_the_same_bits() {
+        let figure = Figure::built_in().unwrap();
+        assert_eq!(dressed(&figure, 4, 1), dressed(&figure, 4, 1));
+    }
 }

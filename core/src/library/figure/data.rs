@@ -4,9 +4,9 @@
 //! array; within a group those of coarser levels of detail come first, so that every level reads
 //! a prefix. Nothing is evaluated here.
 
-use super::FigureError;
 use super::predict::{self, PARENTS};
 use super::stream::{Reader, Stream, Writer};
+use super::{FigureError, VOLUME_LOD};
 
 /// Levels of detail of every group, finest first.
 pub const LOD_COUNT: usize = 5;
@@ -340,6 +340,27 @@ impl FigureData {
         need(points >= 17, "keypoint names")?;
         for list in [&self.keypoint_vertices, &self.keypoint_ring] {
             need(list.len() == points * KEYPOINT_VERTICES && below(list, 0, all), "keypoints")?;
+        }
+        let prefix = |g: GroupId, lod: usize| {
+            let g = &self.groups[g as usize];
+            g.first..g.first + g.lods[lod].vertices
+        };
+        let always = [
+            prefix(GroupId::Skin, VOLUME_LOD),
+            prefix(GroupId::Shell, LOD_COUNT - 1),
+            prefix(GroupId::Eyes, LOD_COUNT - 1),
+            prefix(GroupId::Joints, LOD_COUNT - 1),
+        ];
+        for list in [
+            &self.keypoint_vertices,
+            &self.keypoint_ring,
+            &self.ground,
+            &self.sole,
+            &self.joint_heads,
+            &self.joint_tails,
+        ] {
+            let known = |v: &u16| always.iter().any(|r| r.contains(&u32::from(*v)));
+            need(list.iter().all(known), "vertices that every body needs")?;
         }
         need(self.keypoint_weights.len() == self.keypoint_vertices.len(), "keypoint weights")?;
         for list in [&self.ground, &self.crown, &self.feet] {

@@ -316,3 +316,138 @@ fn with_mips(log2_size: u32, top: Vec<u32>) -> Texture {
     }
     Texture { log2_size, encoding: Encoding::Linear, texels }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::collections::BTreeMap;
+
+    fn figure() -> Arc<Figure> {
+        Figure::built_in().unwrap()
+    }
+
+    fn at(figure: &Figure, v: usize) -> [f32; 3] {
+        let t = figure.template();
+        [t.x[v], t.y[v], t.z[v]]
+    }
+
+    /// Centimetres on the template, measured independently with a script on the source files.
+    #[test]
+    fn joints_stand_where_the_source_rig_has_them() {
+        let expected = [
+            ("Hips", [0.0, 7.3, 1.4]),
+            ("Spine", [0.0, 11.9, -1.0]),
+            ("Spine1", [0.0, 18.7, 1.5]),
+            ("Spine2", [0.0, 28.0, 2.6]),
+            ("Neck", [0.0, 58.9, 0.7]),
+            ("Head", [0.0, 69.7, 1.6]),
+            ("LeftShoulder", [2.7, 51.9, 6.9]),
+            ("LeftArm", [16.8, 52.5, 1.5]),
+            ("LeftForeArm", [31.3, 34.9, 1.3]),
+            ("LeftHand", [43.1, 24.5, 17.6]),
+            ("LeftUpLeg", [11.0, 4.9, 1.2]),
+            ("LeftLeg", [15.8, -36.9, 3.2]),
+            ("LeftFoot", [22.0, -74.5, -0.1]),
+            ("LeftToeBase", [22.0, -81.0, 12.1]),
+        ];
+        let figure = figure();
+        assert_eq!(figure.joint_names().len(), JOINT_COUNT);
+        for (name, cm) in expected {
+            let j = figure.joint_names().iter().position(|n| n == name).unwrap();
+            for c in 0..3 {
+                let cube = &figure.data().joint_heads[8 * j..8 * j + 8];
+                let mean: f32 = cube.iter().map(|&v| at(&figure, v.into())[c]).sum::<f32>() / 8.0;
+                assert!((mean * 100.0 - cm[c]).abs() < 0.06, "{name} {mean} {cm:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn skin_weights_mirror_exactly() {
+        let figure = figure();
+        let names = figure.joint_names();
+        let mirror: Vec<u8> = names
+            .iter()
+            .map(|n| {
+                let other = if n.starts_with("Left") {
+                    n.replacen("Left", "Right", 1)
+                } else {
+                    n.replacen("Right", "Left", 1)
+                };
+                names.iter().position(|m| *m == other).unwrap() as u8
+            })
+            .collect();
+        let set = |s: SkinVertex, m: &dyn Fn(u8) -> u8| -> BTreeMap<u8, u8> {
+            let pairs = s.joints.iter().zip(s.weights);
+            pairs.filter(|p| p.1 > 0).map(|(&j, w)| (m(j), w)).collect()
+        };
+        let body = figure.vertices(GroupId::Skin, figure.group(GroupId::Skin).count);
+        let shell = figure.vertices(GroupId::Shell, figure.group(GroupId::Shell).count);
+        for range in [body, shell] {
+            // Vertices that share a place (closed lips) share the key: each must find its twin.
+            let mut places = BTreeMap::<[u32; 3], Vec<usize>>::new();
+            for v in range.clone() {
+                let [x, y, z] = at(&figure, v);
+                places.entry([(x + 0.0).to_bits(), y.to_bits(), z.to_bits()]).or_default().push(v);
+            }
+            for v in range {
+                let [x, y, z] = at(&figure, v);
+                let twins = &places[&[(-x + 0.0).to_bits(), y.to_bits(), z.to_bits()]];
+                let mine = set(figure.skin()[v], &|j| mirror[usize::from(j)]);
+                assert!(twins.iter().any(|&t| set(figure.skin()[t], &|j| j) == mine), "{v}");
+            }
+        }
+    }
+
+    #[test]
+    fn levels_of_detail_are_nested_prefixes() {
+        let figure = figure();
+        for id in [GroupId::Skin, GroupId::Shell, GroupId::HairCap, GroupId::HairCurtain] {
+            let lods = &figure.group(id).lods;
+            assert_eq!(lods[0].vertices, figure.group(id).count);
+            for pair in lods.windows(2) {
+                assert!(pair[1].vertices < pair[0].vertices && pair[1].render < pair[0].render);
+                assert!(pair[1].triangles.len() < pair[0].triangles.len());
+                assert!(pair[1].error_m >= pair[0].error_m, "{id:?}");
+            }
+        }
+        assert!(figure.lod_error_m(0) == 0.0 && figure.lod_error_m(3) < 0.02);
+    }
+
+    #[test]
+    fn regressors_sum_to_one() {
+        let figure = figure();
+        assert_eq!(figure.keypoint_names()[..3], ["nose", "left_eye", "right_eye"]);
+        for k in 0..figure.keypoint_names().len() {
+            let sum: f32 = figure.keypoint(k).map(|p| p.1).sum();
+            assert!((sum - 1.0).abs() < 1e-4, "{k} {sum}");
+        }
+    }
+
+    #[test]
+    fn the_smallest_mip_is_the_mean() {
+        let figure = figure();
+        for t in [figure.skin_mask(), figure.eye_mask()] {
+            assert_eq!(t.texels.len(), Texture::level_offset(t.log2_size, t.log2_size) + 1);
+            let side = 1usize << t.log2_size;
+            for c in [0, 8, 16, 24] {
+                let top = &t.texels[..side * side];
+                let sum: u64 = top.iter().map(|p| u64::from((p >> c) & 255)).sum();
+                let mean = sum as f64 / (side * side) as f64;
+                let last = f64::from((t.texels[t.texels.len() - 1] >> c) & 255);
+                assert!((mean - last).abs() < 3.0, "{mean} {last}");
+            }
+        }
+    }
+
+    #[test]
+    fn damaged_files_are_refused() {
+        let good = include_bytes!("../../../../assets/figure.fig");
+        assert!(matches!(Figure::from_bytes(&good[..1000]), Err(FigureError::Compressed(_))));
+        assert!(matches!(Figure::from_bytes(b"no figure"), Err(FigureError::Compressed(_))));
+        let mut data = figure().data().clone();
+        data.keypoint_vertices[5] = u16::MAX;
+        let e = FigureData::from_bytes(&data.to_bytes()).unwrap_err();
+        assert!(e.to_string().contains("keypoints"), "{e}");
+    }
+}
