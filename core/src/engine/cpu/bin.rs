@@ -19,8 +19,8 @@ pub(super) struct Bins {
 impl Bins {
     /// Sorts triangles into square tiles of `1 << tile_log2` pixels.
     pub(super) fn fill(&mut self, triangles: &[Triangle], tile_log2: u32) {
-        let tiles = |t: &Triangle| t.pixels.map(|p| u32::from(p) >> tile_log2);
-        self.rect = triangles.iter().map(tiles).fold([u32::MAX, 0, u32::MAX, 0], |r, t| {
+        self.rect = triangles.iter().fold([u32::MAX, 0, u32::MAX, 0], |r, t| {
+            let t = tiles(t, tile_log2);
             [r[0].min(t[0]), r[1].max(t[1]), r[2].min(t[2]), r[3].max(t[3])]
         });
         self.starts.clear();
@@ -31,26 +31,17 @@ impl Bins {
         let [left, right, top, bottom] = self.rect;
         let columns = (right - left + 1) as usize;
         let count = columns * (bottom - top + 1) as usize;
-        let each_tile = |t: &Triangle, f: &mut dyn FnMut(usize)| {
-            let [x0, x1, y0, y1] = tiles(t);
-            for y in y0..=y1 {
-                let row = (y - top) as usize * columns;
-                for x in x0..=x1 {
-                    f(row + (x - left) as usize);
-                }
-            }
-        };
         // Counts stand two places on, so that after filling every start stands at its own place.
         self.starts.resize(count + 2, 0);
         for t in triangles {
-            each_tile(t, &mut |tile| self.starts[tile + 2] += 1);
+            each_tile(tiles(t, tile_log2), self.rect, |tile| self.starts[tile + 2] += 1);
         }
         for i in 2..self.starts.len() {
             self.starts[i] += self.starts[i - 1];
         }
         self.list.resize(self.starts[count + 1] as usize, 0);
         for (index, t) in triangles.iter().enumerate() {
-            each_tile(t, &mut |tile| {
+            each_tile(tiles(t, tile_log2), self.rect, |tile| {
                 let at = &mut self.starts[tile + 1];
                 self.list[*at as usize] = index as u32;
                 *at += 1;
@@ -67,5 +58,23 @@ impl Bins {
         }
         let tile = ((y - top) * (right - left + 1) + (x - left)) as usize;
         &self.list[self.starts[tile] as usize..self.starts[tile + 1] as usize]
+    }
+}
+
+/// First and last column, then row of the tiles that a triangle may touch.
+#[inline(always)]
+fn tiles(t: &Triangle, tile_log2: u32) -> [u32; 4] {
+    t.pixels.map(|px| u32::from(px) >> tile_log2)
+}
+
+/// Calls a function with the place, row by row within `rect`, of each of a triangle's tiles.
+#[inline(always)]
+fn each_tile([x0, x1, y0, y1]: [u32; 4], rect: [u32; 4], mut f: impl FnMut(usize)) {
+    let columns = rect[1] - rect[0] + 1;
+    for y in y0..=y1 {
+        let row = (y - rect[2]) * columns;
+        for x in x0..=x1 {
+            f((row + (x - rect[0])) as usize);
+        }
     }
 }

@@ -99,7 +99,7 @@ impl Fragments {
         }
         for slot in 0..TILE * TILE {
             let ids = &tile.ids[slot * S..(slot + 1) * S];
-            if ids.iter().all(|id| *id == ids[0]) {
+            if ids[1..].iter().fold(0, |differ, id| differ | (id ^ ids[0])) == 0 {
                 self.background[slot] = if ids[0] == NOTHING { 1.0 } else { 0.0 };
                 if ids[0] != NOTHING {
                     let center = Self::center::<S>(tile, slot, [8.0, 8.0]);
@@ -173,12 +173,14 @@ impl Fragments {
             self.buckets.push(Bucket { draw, start: 0, len: 0 });
         }
         let bucket = *known;
-        self.buckets[usize::from(bucket)].len += 1;
         self.found.push(Fragment { id, x, y, weight, slot: slot as u16, bucket });
     }
 
     /// Sorts by bucket, keeping the order within each.
     fn order(&mut self) {
+        for fragment in &self.found {
+            self.buckets[usize::from(fragment.bucket)].len += 1;
+        }
         let mut end = 0;
         for bucket in &mut self.buckets {
             bucket.start = end;

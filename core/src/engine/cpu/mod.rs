@@ -42,7 +42,7 @@ use self::chunk::{Chunk, ChunkList};
 use self::project::{Projection, ScreenVertex};
 use self::samples::TILE;
 use self::setup::Target;
-use self::shade::{Decoding, Geometry, Lighting, Rays, Stage, Surface};
+use self::shade::{Geometry, Lighting, Rays, Stage, Surface};
 use self::shadow::{Bounds, ShadowMap, ShadowView, SunAxes, SunShadow};
 use self::simd::{F32x8, Level};
 use self::tile::{Row, Scratch, Shading, TilePass};
@@ -85,7 +85,6 @@ struct Buffers {
     casting: ChunkList,
     sun_screen: Vec<ScreenVertex>,
     shadow_map: ShadowMap,
-    decoding: Decoding,
     scratches: Mutex<Vec<Scratch>>,
 }
 
@@ -274,9 +273,7 @@ impl Buffers {
             list,
             placed: &self.placed,
             chunks: self.visible.as_slice(),
-            shading: shades.then(|| {
-                shading(list, self.visible.as_slice(), &self.placed, &self.decoding, shadow)
-            }),
+            shading: shades.then(|| shading(list, self.visible.as_slice(), &self.placed, shadow)),
             resolves,
             reduces,
         };
@@ -317,7 +314,6 @@ fn shading<'a>(
     list: &'a DrawList,
     chunks: &'a [Chunk],
     placed: &'a skin::Placed,
-    decoding: &'a Decoding,
     shadow: Option<SunShadow<'a>>,
 ) -> Shading<'a> {
     let view = &list.view;
@@ -328,7 +324,7 @@ fn shading<'a>(
             rays: Rays::new(view),
             lighting: Lighting::new(&list.lights, list.exposure, &view.view_from_world, shadow),
         },
-        surfaces: list.materials.iter().map(|m| Surface::new(m, list, decoding)).collect(),
+        surfaces: list.materials.iter().map(|m| Surface::new(m, list)).collect(),
         background: list.lights.background_nits.map(display),
     }
 }

@@ -90,6 +90,7 @@ pub(super) fn set_up(chunk: &mut Chunk, mesh_triangles: &[[u32; 3]], target: &Ta
 }
 
 impl Triangle {
+    #[inline(always)]
     pub(super) fn with_plane(self, plane: DepthPlane) -> Self {
         Self { plane, ..self }
     }
@@ -97,6 +98,7 @@ impl Triangle {
 
 impl Chunk {
     /// Takes a triangle over.
+    #[inline(always)]
     pub(super) fn push(&mut self, triangle: Triangle, corners: [u32; 3], target: &Target<'_>) {
         if target.shaded {
             let normal = facing(&triangle.plane, target.projection);
@@ -108,6 +110,7 @@ impl Chunk {
 
 /// The triangle in raster coordinates, without its plane, if it faces the viewer and may cover a
 /// sample.
+#[inline(always)]
 pub(super) fn cull(chunk: &Chunk, v: &[ScreenVertex; 3], target: &Target<'_>) -> Option<Triangle> {
     const HALF: i32 = 1 << (SCREEN_BITS - RASTER_BITS - 1);
     let snap = |fixed: i32| (fixed + HALF) >> (SCREEN_BITS - RASTER_BITS);
@@ -152,6 +155,7 @@ pub(super) fn cull(chunk: &Chunk, v: &[ScreenVertex; 3], target: &Target<'_>) ->
 }
 
 /// Depth over the picture, from the vertices before they were snapped to the raster.
+#[inline(always)]
 fn plane(v: &[ScreenVertex; 3]) -> DepthPlane {
     const PX: f64 = (1 << SCREEN_BITS) as f64;
     let [x0, x1, x2] = v.map(|v| f64::from(v.x));
@@ -186,6 +190,7 @@ fn along_longest_edge(edges: [[f64; 3]; 3]) -> (f64, f64) {
 }
 
 /// Whether part of a triangle lies outside the picture.
+#[inline(always)]
 fn reaches_over_border(v: &[ScreenVertex; 3], target: &Target<'_>) -> bool {
     let [width, height] = target.projection.size.map(|s| (s as i32) << SCREEN_BITS);
     v.iter().any(|v| v.x < 0 || v.y < 0 || v.x > width || v.y > height)
@@ -193,12 +198,14 @@ fn reaches_over_border(v: &[ScreenVertex; 3], target: &Target<'_>) -> bool {
 
 /// The normal of a plane in view space, from its depth as a function of the picture: a plane
 /// `n . p = c` has depth proportional to `(n . ray) / c`.
+#[inline(always)]
 fn facing(plane: &DepthPlane, projection: &Projection) -> [i8; 3] {
     let rows = &projection.rows;
     let (fx, cx) = (rows[0][0], -rows[0][2]);
     let (fy, cy) = (-rows[1][1], -rows[1][2]);
     let axis = plane.origin + plane.dx * cx + plane.dy * cy;
-    let n = [plane.dx * fx, plane.dy * fy, axis];
-    let length = (n[0] * n[0] + n[1] * n[1] + n[2] * n[2]).sqrt().max(1e-300);
-    n.map(|v| (v * (127.0 / length)) as i8)
+    let n = [plane.dx * fx, plane.dy * fy, axis].map(|v| v as f32);
+    let length = (n[0] * n[0] + n[1] * n[1] + n[2] * n[2]).sqrt().max(1e-30);
+    let scale = 127.0 / length;
+    n.map(|v| (v * scale) as i8)
 }

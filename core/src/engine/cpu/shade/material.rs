@@ -1,7 +1,7 @@
 //! Materials: maps, hue and masked layers, down to albedo, roughness and normal.
 
 use super::surface::{Points, TexturePoints};
-use super::texture::{Decoding, Sampler, footprint};
+use super::texture::{Sampler, footprint};
 use crate::draw::DrawList;
 use crate::draw::abi::Material;
 use crate::engine::cpu::simd::{F32x8, Vec3x8};
@@ -34,14 +34,9 @@ pub(super) struct Look<const AVX2: bool> {
 }
 
 impl<'a> Surface<'a> {
-    pub(in crate::engine::cpu) fn new(
-        material: &Material,
-        list: &'a DrawList,
-        decoding: &'a Decoding,
-    ) -> Self {
-        let sampler = |map: Option<u32>| {
-            map.map(|index| Sampler::new(&list.textures[index as usize], decoding))
-        };
+    pub(in crate::engine::cpu) fn new(material: &Material, list: &'a DrawList) -> Self {
+        let sampler =
+            |map: Option<u32>| map.map(|index| Sampler::new(&list.textures[index as usize]));
         let turn = material.hue_offset_deg / 60.0;
         let hue_offset = (turn != 0.0).then(|| turn - 6.0 * (turn / 6.0).floor());
         let albedo_map = sampler(material.albedo_map);

@@ -17,7 +17,6 @@ use super::simd::{F32x8, LANES, Vec3x8, kernel};
 pub(super) use light::Lighting;
 pub(super) use material::Surface;
 pub(super) use surface::{Geometry, Rays};
-pub(super) use texture::Decoding;
 
 /// Linear display light of a tile's pixel slots, by channel.
 pub(super) type TileColor = [[f32; TILE * TILE]; 3];
