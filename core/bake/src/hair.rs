@@ -72,6 +72,9 @@ pub fn scalp_depth(p: DVec3) -> f64 {
         .fold(f64::MAX, f64::min)
 }
 
+/// A place on the scalp: position, and base vertices with weights.
+type Root = (DVec3, Vec<(usize, f64)>);
+
 /// Rays from inside the head to its skin.
 struct Head<'a> {
     source: &'a Source,
@@ -103,7 +106,7 @@ impl<'a> Head<'a> {
     }
 
     /// The scalp in a direction given by azimuth and elevation in degrees.
-    fn scalp(&self, azimuth: f64, elevation: f64) -> (DVec3, Vec<(usize, f64)>) {
+    fn scalp(&self, azimuth: f64, elevation: f64) -> Root {
         let (a, e) = (azimuth.to_radians(), elevation.to_radians());
         let d = DVec3::new(a.sin() * e.cos(), e.sin(), a.cos() * e.cos());
         let hit = self.hits(CENTER, d).into_iter().next().expect("the head is closed");
@@ -166,7 +169,7 @@ pub fn cap(source: &Source, rig: &Rig) -> (Draft, Vec<f64>) {
     (draft, depth)
 }
 
-fn cap_triangles(draft: &mut Draft, grid: &[Vec<(DVec3, Vec<(usize, f64)>)>]) {
+fn cap_triangles(draft: &mut Draft, grid: &[Vec<Root>]) {
     // Texture: u round the head four times, v along the hair, one repeat every 0.25 m.
     let u = |i: usize| (4.0 * i as f64 / CAP_COLUMNS as f64) as f32;
     for i in 0..CAP_COLUMNS {
@@ -265,12 +268,18 @@ pub fn curtain(source: &Source, rig: &Rig) -> Draft {
 /// Radius of the outer sheet: over the scalp and the ears, then falling straight, at the back
 /// leaning out over the shoulders.
 fn curtain_radius(head: &Head<'_>, azimuth: f64, folded: f64, y: f64) -> f64 {
-    let a = azimuth.to_radians();
-    let skin = |y: f64| {
+    let around = |y: f64, azimuth: f64| {
+        let a = azimuth.to_radians();
         let hits = head.hits(DVec3::new(0.0, y, CENTER.z), DVec3::new(a.sin(), 0.0, a.cos()));
         hits.last().map_or(0.07, |h| h.0)
     };
-    let hang = [0.70, 0.715, 0.73, 0.75].map(skin).into_iter().fold(0.0, f64::max) + 0.012;
+    let skin = |y: f64| around(y, azimuth);
+    // The ears lie under it: the farthest skin near this direction counts.
+    let hang = [-12.0, -6.0, 0.0, 6.0, 12.0]
+        .iter()
+        .flat_map(|d| [0.70, 0.715, 0.73, 0.75].map(|y| around(y, azimuth + d)))
+        .fold(0.0, f64::max)
+        + 0.010;
     let close = skin(y.clamp(0.74, 0.79)) + 0.010 + 0.005 * smoothstep(0.775, 0.750, y);
     let head_part = smoothstep(0.775, 0.735, y);
     let falling = close + (hang.max(close) - close) * head_part;

@@ -225,10 +225,8 @@ fn solve(g: &[Vec<f64>], r: &[f64], yy: f64, set: &[usize]) -> Option<(f64, Vec<
         for row in 0..=n {
             if row != c {
                 let f = m[row][c] / m[c][c];
-                for k in c..n + 2 {
-                    let v = m[c][k];
-                    m[row][k] -= f * v;
-                }
+                let pivot = m[c].clone();
+                m[row].iter_mut().zip(&pivot).skip(c).for_each(|(x, p)| *x -= f * p);
             }
         }
     }
@@ -367,7 +365,7 @@ fn posed(source: &Source, rig: &Rig, rest: &[DVec3], dice: &mut Dice) -> Vec<DVe
     rest.iter()
         .enumerate()
         .map(|(v, &p)| {
-            if v >= BODY_VERTICES && v < 13_606 {
+            if (BODY_VERTICES..13_606).contains(&v) {
                 return p;
             }
             let s = &rig.skin[v];

@@ -41,8 +41,8 @@ pub(super) struct Refined<'a> {
 
 impl<'a> Refined<'a> {
     /// Splits every triangle that the field's zero crosses into four, so that the cut follows a
-    /// curved line. New vertices lie on the old edges, where `between` gives the field; whole
-    /// triangles that share such an edge fit on without a gap.
+    /// curved line, and its neighbours at the edges they share, so that no gap opens when the
+    /// surface is posed. New vertices lie on the old edges, where `between` gives the field.
     pub fn new(s: &Surface<'_>, field: &'a [f32], between: impl Fn(usize, usize) -> f32) -> Self {
         let mut out = Self {
             render: s.render.to_vec(),
@@ -53,34 +53,74 @@ impl<'a> Refined<'a> {
             skin: s.skin.to_vec(),
             field: Cow::Borrowed(field),
         };
-        let mut vertices = BTreeMap::<CutKey, u16>::new();
+        let (vertices, touched) = out.split_crossed(s, between);
         let mut corners = BTreeMap::<CutKey, u16>::new();
         for t in s.triangles.chunks_exact(3) {
             let r = [t[0], t[1], t[2]];
             let v = r.map(|r| s.render[usize::from(r)]);
-            let inside = v.map(|v| field[usize::from(v)] >= 0.0);
-            if inside[0] == inside[1] && inside[1] == inside[2] {
+            if v.iter().filter(|&&v| touched[usize::from(v)]).count() < 2 {
                 out.triangles.extend(r);
                 continue;
             }
-            let m: [u16; 3] = std::array::from_fn(|i| {
+            let middle: [Option<u16>; 3] = std::array::from_fn(|i| {
                 let j = (i + 1) % 3;
+                let vertex = *vertices.get(&(v[i].min(v[j]), v[i].max(v[j])))?;
                 let (a, b) = (r[i].min(r[j]), r[i].max(r[j]));
-                *corners.entry((a, b)).or_insert_with(|| {
-                    let key = (v[i].min(v[j]), v[i].max(v[j]));
-                    let vertex = *vertices.entry(key).or_insert_with(|| out.split(key, &between));
-                    out.render.push(vertex);
-                    for k in 0..2 {
-                        let (x, y) = (2 * usize::from(a) + k, 2 * usize::from(b) + k);
-                        out.uvs.push((s.uvs[x] + s.uvs[y]) * 0.5);
-                    }
-                    out.render.len() as u16 - 1
-                })
+                Some(*corners.entry((a, b)).or_insert_with(|| out.corner(vertex, a, b)))
             });
-            out.triangles
-                .extend([r[0], m[0], m[2], m[0], r[1], m[1], m[2], m[1], r[2], m[0], m[1], m[2]]);
+            out.divide(r, middle);
         }
         out
+    }
+
+    /// New vertices in the middle of all edges of crossed triangles, by edge; and which old
+    /// vertices have such an edge.
+    fn split_crossed(
+        &mut self,
+        s: &Surface<'_>,
+        between: impl Fn(usize, usize) -> f32,
+    ) -> (BTreeMap<CutKey, u16>, Vec<bool>) {
+        let mut vertices = BTreeMap::new();
+        let mut touched = vec![false; s.positions.len()];
+        for t in s.triangles.chunks_exact(3) {
+            let v = [t[0], t[1], t[2]].map(|r| s.render[usize::from(r)]);
+            let inside = v.map(|v| self.field[usize::from(v)] >= 0.0);
+            if inside[0] == inside[1] && inside[1] == inside[2] {
+                continue;
+            }
+            for i in 0..3 {
+                let j = (i + 1) % 3;
+                let key = (v[i].min(v[j]), v[i].max(v[j]));
+                vertices.entry(key).or_insert_with(|| self.split(key, &between));
+                touched[usize::from(v[i])] = true;
+            }
+        }
+        (vertices, touched)
+    }
+
+    /// A render vertex half way between two others.
+    fn corner(&mut self, vertex: u16, a: u16, b: u16) -> u16 {
+        self.render.push(vertex);
+        for k in 0..2 {
+            let (x, y) = (2 * usize::from(a) + k, 2 * usize::from(b) + k);
+            self.uvs.push((self.uvs[x] + self.uvs[y]) * 0.5);
+        }
+        self.render.len() as u16 - 1
+    }
+
+    /// A triangle with new corners in the middle of some of its edges (first to second, second to
+    /// third, third to first).
+    fn divide(&mut self, [a, b, c]: [u16; 3], middle: [Option<u16>; 3]) {
+        match middle {
+            [None, None, None] => self.triangles.extend([a, b, c]),
+            [Some(m), Some(n), Some(o)] => {
+                self.triangles.extend([a, m, o, m, b, n, o, n, c, m, n, o]);
+            }
+            [Some(m), None, None] => self.triangles.extend([a, m, c, m, b, c]),
+            [Some(m), Some(n), None] => self.triangles.extend([m, b, n, a, m, n, a, n, c]),
+            // The other cases are these, turned.
+            [m, n, o] => self.divide([b, c, a], [n, o, m]),
+        }
     }
 
     fn split(&mut self, (a, b): CutKey, between: &impl Fn(usize, usize) -> f32) -> u16 {
@@ -384,6 +424,56 @@ mod tests {
             assert!(p[0] <= 1.25 + 0.5 * p[1] + 1e-5);
         }
         assert!(m.skin.iter().all(|s| s.weights.iter().map(|&w| u32::from(w)).sum::<u32>() == 255));
+    }
+
+    #[test]
+    fn a_refined_surface_has_no_gaps_and_follows_a_curve() {
+        let (positions, render, triangles) = strip(4);
+        let normals = smooth_normals(&positions, &render, &triangles);
+        let skin = vec![SkinVertex { joints: [0; 4], weights: [255, 0, 0, 0] }; 10];
+        let uvs: Vec<f32> = positions.iter().flat_map(|p| [p.x, p.y]).collect();
+        // A parabola: the finer the cut, the nearer the area to its integral 1.5 + 1/3.
+        let curve = |p: Vec3| 1.5 + p.y * p.y - p.x;
+        let field: Vec<f32> = positions.iter().map(|&p| curve(p)).collect();
+        let s = Surface {
+            render: &render,
+            uvs: &uvs,
+            triangles: &triangles,
+            positions: &positions,
+            normals: &normals,
+            skin: &skin,
+        };
+        let fine = Refined::new(&s, &field, |a, b| curve((positions[a] + positions[b]) * 0.5));
+        let surface = fine.surface();
+        let mut edges = BTreeMap::<[u16; 2], i32>::new();
+        let mut whole = 0.0;
+        for t in surface.triangles.chunks_exact(3) {
+            for (a, b) in [(t[0], t[1]), (t[1], t[2]), (t[2], t[0])] {
+                *edges.entry([a.min(b), a.max(b)]).or_insert(0) += if a < b { 1 } else { -1 };
+            }
+            let [a, b, c] = [t[0], t[1], t[2]].map(|r| surface.positions[usize::from(r)]);
+            whole += (b - a).cross(c - a).z * 0.5;
+        }
+        assert!((whole - 4.0).abs() < 1e-5);
+        // Every inner edge is used once each way: what is left is the strip's outline.
+        for ([a, b], _) in edges.into_iter().filter(|e| e.1 != 0) {
+            let [p, q] = [a, b].map(|r| surface.positions[usize::from(r)]);
+            let same = |f: fn(Vec3) -> f32, x: f32| f(p) == x && f(q) == x;
+            assert!(
+                same(|p| p.y, 0.0)
+                    || same(|p| p.y, 1.0)
+                    || same(|p| p.x, 0.0)
+                    || same(|p| p.x, 4.0)
+            );
+        }
+        let area_of = |s: &Surface<'_>, f: &[f32]| {
+            let mut b = Builder::default();
+            b.add_cut(s, f, None);
+            area(&b.mesh)
+        };
+        let exact = 1.5 + 1.0 / 3.0;
+        let (coarse, refined) = (area_of(&s, &field), area_of(&surface, fine.field()));
+        assert!((refined - exact).abs() < 0.5 * (coarse - exact).abs(), "{coarse} {refined}");
     }
 
     #[test]
