@@ -71,9 +71,9 @@ fn tiles(t: &Triangle, tile_log2: u32) -> [u32; 4] {
 #[inline(always)]
 fn each_tile([x0, x1, y0, y1]: [u32; 4], rect: [u32; 4], mut f: impl FnMut(usize)) {
     let columns = rect[1] - rect[0] + 1;
-    for y in y0..=y1 {
+    for y in y0..y1 + 1 {
         let row = (y - rect[2]) * columns;
-        for x in x0..=x1 {
+        for x in x0..x1 + 1 {
             f((row + (x - rect[0])) as usize);
         }
     }

@@ -4,8 +4,10 @@
 //! others get one for each triangle; its weight is its share of the samples. Fragments are ordered
 //! by draw, so that eight at a time share material and textures.
 
+use std::ops::Range;
+
 use super::chunk::{Chunk, Face, NOTHING, split_id};
-use super::samples::{Layout, TILE};
+use super::samples::{BLOCK, Layout, TILE};
 use super::simd::LANES;
 
 /// Cosine of the angle between faces, in 1/127 squared, below which an edge counts as a crease
@@ -56,6 +58,12 @@ pub(super) struct Fragments {
 
 const NO_BUCKET: u16 = u16::MAX;
 
+/// Whether all ids are the same.
+#[inline(always)]
+fn equal(ids: &[u32]) -> bool {
+    ids.iter().fold(0, |differ, id| differ | (id ^ ids[0])) == 0
+}
+
 /// A tile's visibility and where it stands.
 #[derive(Clone, Copy)]
 pub(super) struct Visible<'a> {
@@ -97,22 +105,52 @@ impl Fragments {
             self.bucket_of_draw.clear();
             self.bucket_of_draw.resize(draws, NO_BUCKET);
         }
-        for slot in 0..TILE * TILE {
-            let ids = &tile.ids[slot * S..(slot + 1) * S];
-            if ids[1..].iter().fold(0, |differ, id| differ | (id ^ ids[0])) == 0 {
-                self.background[slot] = if ids[0] == NOTHING { 1.0 } else { 0.0 };
-                if ids[0] != NOTHING {
-                    let center = Self::center::<S>(tile, slot, [8.0, 8.0]);
-                    self.add(tile, slot, ids[0], center, 1.0);
+        for (block, ids) in tile.ids.as_chunks::<BLOCK>().0.iter().enumerate() {
+            let slots = block * BLOCK / S..(block + 1) * BLOCK / S;
+            if equal(ids) {
+                self.whole_pixels::<S>(tile, slots, ids[0]);
+                continue;
+            }
+            for slot in slots {
+                let ids = &tile.ids[slot * S..(slot + 1) * S];
+                if equal(ids) {
+                    self.whole_pixels::<S>(tile, slot..slot + 1, ids[0]);
+                } else {
+                    self.background[slot] = self.group::<S>(tile, slot);
                 }
-            } else {
-                self.background[slot] = self.group::<S>(tile, slot);
             }
         }
         self.order();
         for bucket in &self.buckets {
             self.bucket_of_draw[bucket.draw as usize] = NO_BUCKET;
         }
+    }
+
+    /// Adds pixels that one triangle, or nothing, covers.
+    #[inline(always)]
+    fn whole_pixels<const S: usize>(&mut self, tile: &Visible<'_>, slots: Range<usize>, id: u32) {
+        if id == NOTHING {
+            self.background[slots].fill(1.0);
+            return;
+        }
+        let bucket = self.bucket(tile.chunks[split_id(id).0].draw);
+        self.buckets[usize::from(bucket)].len += slots.len();
+        self.background[slots.clone()].fill(0.0);
+        for slot in slots {
+            let [x, y] = Self::center::<S>(tile, slot, [8.0, 8.0]);
+            self.found.push(Fragment { id, x, y, weight: 1.0, slot: slot as u16, bucket });
+        }
+    }
+
+    /// The bucket of a draw.
+    #[inline(always)]
+    fn bucket(&mut self, draw: u32) -> u16 {
+        let known = &mut self.bucket_of_draw[draw as usize];
+        if *known == NO_BUCKET {
+            *known = self.buckets.len() as u16;
+            self.buckets.push(Bucket { draw, start: 0, len: 0 });
+        }
+        *known
     }
 
     /// Picture position of a point of a pixel, given in 1/16 pixel.
@@ -158,29 +196,17 @@ impl Fragments {
                 }
             }
             let mean = sum.map(|s| s as f32 / count as f32);
-            let center = Self::center::<S>(tile, slot, mean);
-            self.add(tile, slot, id, center, count as f32 / S as f32);
+            let [x, y] = Self::center::<S>(tile, slot, mean);
+            let weight = count as f32 / S as f32;
+            let bucket = self.bucket(chunk.draw);
+            self.buckets[usize::from(bucket)].len += 1;
+            self.found.push(Fragment { id, x, y, weight, slot: slot as u16, bucket });
         }
         nothing as f32 / S as f32
     }
 
-    #[inline(always)]
-    fn add(&mut self, tile: &Visible<'_>, slot: usize, id: u32, [x, y]: [f32; 2], weight: f32) {
-        let draw = tile.chunks[split_id(id).0].draw;
-        let known = &mut self.bucket_of_draw[draw as usize];
-        if *known == NO_BUCKET {
-            *known = self.buckets.len() as u16;
-            self.buckets.push(Bucket { draw, start: 0, len: 0 });
-        }
-        let bucket = *known;
-        self.found.push(Fragment { id, x, y, weight, slot: slot as u16, bucket });
-    }
-
     /// Sorts by bucket, keeping the order within each.
     fn order(&mut self) {
-        for fragment in &self.found {
-            self.buckets[usize::from(fragment.bucket)].len += 1;
-        }
         let mut end = 0;
         for bucket in &mut self.buckets {
             bucket.start = end;

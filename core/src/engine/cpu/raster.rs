@@ -43,10 +43,11 @@ fn raster_body<const AVX2: bool, const S: usize, const IDS: bool, const SIDE: us
     farthest.fill(0.0);
     let ids = if IDS {
         ids[..samples].fill(NOTHING);
-        &mut ids[..samples]
+        ids[..samples].as_chunks_mut().0
     } else {
-        ids
+        ids.as_chunks_mut().0
     };
+    let depth = depth.as_chunks_mut().0;
     let origin_px = [(tile[0] as usize * SIDE) as i32, (tile[1] as usize * SIDE) as i32];
     for (index, chunk) in chunks.iter().enumerate() {
         for &t in chunk.bins.of(tile) {
@@ -125,8 +126,8 @@ fn raster_triangle<
     t: &Triangle,
     id: u32,
     origin_px: [i32; 2],
-    depth: &mut [f32],
-    ids: &mut [u32],
+    depth: &mut [[f32; BLOCK]],
+    ids: &mut [[u32; BLOCK]],
     farthest: &mut [f32],
 ) {
     let log2 = Layout::<S>::BLOCK_LOG2;
@@ -164,8 +165,8 @@ fn raster_triangle<
     let last = |px: u16, axis: usize| (i32::from(px) - origin_px[axis]).min(side) >> log2;
     let (bx0, bx1) = (first(t.pixels[0], 0), last(t.pixels[1], 0));
     let (by0, by1) = (first(t.pixels[2], 1), last(t.pixels[3], 1));
-    for by in by0..=by1 {
-        for bx in bx0..=bx1 {
+    for by in by0..by1 + 1 {
+        for bx in bx0..bx1 + 1 {
             let block = by as usize * blocks_per_row + bx as usize;
             if t.nearest <= farthest[block] {
                 continue;
@@ -178,17 +179,17 @@ fn raster_triangle<
                 depth_origin + slope_x * (bx * block_px) as f32 + slope_y * (by * block_px) as f32;
             let mut least = F32x8::<AVX2>::splat(f32::MAX);
             for half in 0..HALVES {
-                let from = block * BLOCK + half * LANES;
-                let old_depth = F32x8::load(&depth[from..from + LANES]);
+                let from = half * LANES;
+                let old_depth = F32x8::load(&depth[block][from..]);
                 let new_depth = F32x8::splat(block_depth) + lane_depth[half];
                 let inside = (I32x8::splat(at[0]) + lane_edges[half][0])
                     | (I32x8::splat(at[1]) + lane_edges[half][1])
                     | (I32x8::splat(at[2]) + lane_edges[half][2]);
                 let wins = inside.gt(I32x8::splat(-1)) & new_depth.gt(old_depth);
                 let kept = wins.select(new_depth, old_depth);
-                kept.store(&mut depth[from..from + LANES]);
+                kept.store(&mut depth[block][from..]);
                 if IDS {
-                    let ids = &mut ids[from..from + LANES];
+                    let ids = &mut ids[block][from..from + LANES];
                     let mut old = [0; LANES];
                     old.copy_from_slice(ids);
                     ids.copy_from_slice(&wins.select_u32(id, old));

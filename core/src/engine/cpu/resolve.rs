@@ -38,14 +38,14 @@ impl SampleObjects {
 /// Object and distance of each pixel slot of a tile.
 pub(super) struct Resolved {
     /// As in [`crate::plan::Frame::object_ids`].
-    pub(super) object: [u16; TILE * TILE],
+    pub(super) object: [[u16; 1]; TILE * TILE],
     /// As in [`crate::plan::Frame::depth_m`].
-    pub(super) distance_m: [f32; TILE * TILE],
+    pub(super) distance_m: [[f32; 1]; TILE * TILE],
 }
 
 impl Default for Resolved {
     fn default() -> Self {
-        Self { object: [0; TILE * TILE], distance_m: [0.0; TILE * TILE] }
+        Self { object: [[0]; TILE * TILE], distance_m: [[0.0]; TILE * TILE] }
     }
 }
 
@@ -75,10 +75,10 @@ fn resolve_body<const AVX2: bool, const S: usize>(
         } else {
             vote::<S>(objects, depth)
         };
-        out.object[slot] = object;
-        out.distance_m[slot] = nearest;
+        out.object[slot] = [object];
+        out.distance_m[slot] = [nearest];
     }
-    for eight in out.distance_m.chunks_exact_mut(LANES) {
+    for eight in out.distance_m.as_flattened_mut().chunks_exact_mut(LANES) {
         let depth = F32x8::<AVX2>::load(eight);
         let seen = depth.gt(F32x8::ZERO);
         let distance = F32x8::splat(near_m) / seen.select(depth, F32x8::ONE);

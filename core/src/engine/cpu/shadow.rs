@@ -299,12 +299,7 @@ impl SunShadow<'_> {
     /// 1 where nothing in the map is nearer to the sun, else 0.
     #[inline(always)]
     fn compare<const AVX2: bool>(&self, index: I32x8<AVX2>, depth: F32x8<AVX2>) -> F32x8<AVX2> {
-        let mut nearest = F32x8::ZERO;
-        for lane in 0..LANES {
-            let texel = self.map.texels.get(index.0[lane] as usize);
-            nearest.0[lane] = texel.copied().unwrap_or(0.0);
-        }
-        nearest.gt(depth).select(F32x8::ZERO, F32x8::ONE)
+        index.gather_f32(&self.map.texels).gt(depth).select(F32x8::ZERO, F32x8::ONE)
     }
 }
 

@@ -347,6 +347,36 @@ impl<const AVX2: bool> I32x8<AVX2> {
         }
     }
 
+    /// Entries of a table that is not empty; the last one for lanes beyond its end.
+    #[inline(always)]
+    pub(in crate::engine::cpu) fn gather_f32(self, table: &[f32]) -> F32x8<AVX2> {
+        let last = table.len().min(1 << 31) as u32 - 1;
+        either! {
+            // Unsigned minima keep every index within the table.
+            avx2: {
+                let end = arch::_mm256_set1_epi32(last as i32);
+                let index = arch::_mm256_min_epu32(cast(self.0), end);
+                cast(arch::_mm256_i32gather_ps::<4>(table.as_ptr(), index))
+            },
+            lanes: F32x8(lanes!(0.0, i => table[(self.0[i] as u32).min(last) as usize])),
+        }
+    }
+
+    /// Entries of a table that is not empty; the last one for lanes beyond its end.
+    #[inline(always)]
+    pub(in crate::engine::cpu) fn gather_u32(self, table: &[u32]) -> Self {
+        let last = table.len().min(1 << 31) as u32 - 1;
+        either! {
+            // Unsigned minima keep every index within the table.
+            avx2: {
+                let end = arch::_mm256_set1_epi32(last as i32);
+                let index = arch::_mm256_min_epu32(cast(self.0), end);
+                cast(arch::_mm256_i32gather_epi32::<4>(table.as_ptr().cast(), index))
+            },
+            lanes: Self(lanes!(0, i => table[(self.0[i] as u32).min(last) as usize] as i32)),
+        }
+    }
+
     #[inline(always)]
     pub(in crate::engine::cpu) fn to_f32(self) -> F32x8<AVX2> {
         either! {
@@ -537,6 +567,11 @@ mod tests {
             [i, j, i + j, i - j, i * j, i & j, i | j, j << 5, j >> 7, i.shl_each(j >> 20)];
         out.extend(integers.map(|v| v.0.map(|lane| lane as u32)));
         out.push(i.to_f32().0.map(f32::to_bits));
+        let table: Vec<u32> = (0..1000).map(|v| v * v).collect();
+        out.push(i.gather_u32(&table).0.map(|lane| lane as u32));
+        let table: Vec<f32> = table.iter().map(|v| *v as f32).collect();
+        out.push(j.gather_f32(&table).0.map(f32::to_bits));
+        out.push((j >> 22).gather_f32(&table).0.map(f32::to_bits));
         out.push(i.gt(j).select(a, b).0.map(f32::to_bits));
     }
 

@@ -12,7 +12,7 @@ use super::reduce;
 use super::resolve::{Resolved, SampleObjects, resolve};
 use super::samples::{BLOCK, Layout, TILE};
 use super::shade::{DrawnSurface, Stage, Surface, TileColor, shade};
-use super::simd::{F32x8, LANES, Level};
+use super::simd::{F32x8, LANES, Level, kernel};
 use super::{display, skin};
 use crate::draw::DrawList;
 use crate::plan::{ObjectSamples, StageTimes};
@@ -169,20 +169,8 @@ impl TilePass<'_> {
                     &mut s.resolved,
                 );
                 let resolved = &s.resolved;
-                copy_out::<S, u16, 1>(
-                    tile,
-                    size,
-                    view.width,
-                    row.object_ids,
-                    resolved.object.as_chunks().0,
-                );
-                copy_out::<S, f32, 1>(
-                    tile,
-                    size,
-                    view.width,
-                    row.depth_m,
-                    resolved.distance_m.as_chunks().0,
-                );
+                copy_out::<S, u16, 1>(tile, size, view.width, row.object_ids, &resolved.object);
+                copy_out::<S, f32, 1>(tile, size, view.width, row.depth_m, &resolved.distance_m);
             });
         }
         if self.reduces {
@@ -234,13 +222,7 @@ impl TilePass<'_> {
     /// A view-space box round everything that a tile shows; nothing if it shows nothing.
     fn tile_box(&self, origin_px: [u32; 2], depth: &[f32]) -> Option<([f32; 3], [f32; 3])> {
         let view = &self.list.view;
-        let (mut far, mut near) = (F32x8::<false>::splat(f32::MAX), F32x8::ZERO);
-        for eight in depth.chunks_exact(LANES) {
-            let z = F32x8::load(eight);
-            near = near.max(z);
-            far = far.min(z.gt(F32x8::ZERO).select(z, far));
-        }
-        let (near, far) = (near.largest(), far.smallest());
+        let [near, far] = depth_range(self.level, depth);
         if near <= 0.0 {
             return None;
         }
@@ -252,6 +234,22 @@ impl TilePass<'_> {
         let high = |v: f32| (v * distance[0]).max(v * distance[1]);
         Some(([low(x[0]), low(y[0]), -distance[1]], [high(x[1]), high(y[1]), -distance[0]]))
     }
+}
+
+kernel! {
+    /// Largest and smallest depth of the samples that show anything; 0 first if none does.
+    fn depth_range(depth: &[f32]) -> [f32; 2] = depth_range_body
+}
+
+#[inline(always)]
+fn depth_range_body<const AVX2: bool>(depth: &[f32]) -> [f32; 2] {
+    let (mut near, mut far) = (F32x8::<AVX2>::ZERO, F32x8::splat(f32::MAX));
+    for eight in depth.chunks_exact(LANES) {
+        let z = F32x8::load(eight);
+        near = near.max(z);
+        far = far.min(z.gt(F32x8::ZERO).select(z, far));
+    }
+    [near.largest(), far.smallest()]
 }
 
 /// Empties the samples beyond the picture's right and lower border.
@@ -273,16 +271,14 @@ fn copy_out<const S: usize, T: Copy, const N: usize>(
     size: [usize; 2],
     width: u32,
     row: &mut [T],
-    slots: &[[T; N]],
+    slots: &[[T; N]; TILE * TILE],
 ) {
     let left = tile[0] as usize * TILE;
-    let side = Layout::<S>::BLOCK_PX as usize;
     for y in 0..size[1] {
         let start = (y * width as usize + left) * N;
         let (line, _) = row[start..start + size[0] * N].as_chunks_mut::<N>();
-        for (block, pixels) in line.chunks_mut(side).enumerate() {
-            let from = Layout::<S>::slot(block * side, y);
-            pixels.copy_from_slice(&slots[from..from + pixels.len()]);
+        for (x, pixel) in line.iter_mut().enumerate() {
+            *pixel = slots[Layout::<S>::slot(x, y) & (TILE * TILE - 1)];
         }
     }
 }

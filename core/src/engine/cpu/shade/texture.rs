@@ -2,7 +2,7 @@
 //!
 //! Texels are decoded before they are mixed, so that sRGB textures are filtered in linear light.
 
-use crate::engine::cpu::simd::{F32x8, I32x8, LANES};
+use crate::engine::cpu::simd::{F32x8, I32x8};
 use crate::library::texture::{Encoding, Texture};
 
 /// Mip levels of the largest texture that is accepted, and some to spare.
@@ -13,7 +13,7 @@ const LEVELS: usize = 16;
 pub(super) struct Sampler<'a> {
     texels: &'a [u32],
     /// First texel of each level.
-    level_start: [i32; LEVELS],
+    level_start: [u32; LEVELS],
     log2_size: i32,
     srgb: bool,
 }
@@ -22,7 +22,7 @@ impl<'a> Sampler<'a> {
     pub(super) fn new(texture: &'a Texture) -> Self {
         let mut level_start = [0; LEVELS];
         for level in 0..=texture.log2_size {
-            level_start[level as usize] = Texture::level_offset(texture.log2_size, level) as i32;
+            level_start[level as usize] = Texture::level_offset(texture.log2_size, level) as u32;
         }
         Self {
             texels: &texture.texels,
@@ -73,10 +73,7 @@ impl<'a> Sampler<'a> {
         let (left, top) = (x.floor(), y.floor());
         let (wx, wy) = (x - left, y - top);
         let (left, top) = (left.round_i32(), top.round_i32());
-        let mut start = I32x8::<AVX2>::ZERO;
-        for lane in 0..LANES {
-            start.0[lane] = self.level_start[level.0[lane] as usize & (LEVELS - 1)];
-        }
+        let start = level.gather_u32(&self.level_start);
         let columns = [left & last, (left + one) & last];
         let rows = [
             start + (top & last).shl_each(log2_side),
@@ -99,11 +96,7 @@ impl<'a> Sampler<'a> {
     /// Decoded channels of eight texels.
     #[inline(always)]
     fn fetch<const AVX2: bool, const C: usize>(&self, index: I32x8<AVX2>) -> [F32x8<AVX2>; C] {
-        let mut texels = I32x8::<AVX2>::ZERO;
-        for lane in 0..LANES {
-            let texel = self.texels.get(index.0[lane] as usize).copied().unwrap_or(0);
-            texels.0[lane] = texel as i32;
-        }
+        let texels = index.gather_u32(self.texels);
         let mut out = [F32x8::ZERO; C];
         for c in 0..C {
             let byte = ((texels >> (8 * c as u32)) & I32x8::splat(255)).to_f32();
