@@ -5,6 +5,7 @@
 
 use std::collections::BTreeSet;
 use std::fs;
+use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 
 use figurant::road::{Job, LoadError, Road, Simd, Wishes};
@@ -162,7 +163,7 @@ impl Road for Atelier {
         Ok(Self::job(&json!({}), wishes))
     }
 
-    fn maker(&self, job: &Job<Value>) -> Result<Painter, PaintError> {
+    fn maker(&self, job: &Job<Value>, _: NonZeroUsize) -> Result<Painter, PaintError> {
         if job.document["brush"] == false {
             return Err(PaintError::Brush);
         }

@@ -1,5 +1,7 @@
 //! The whole program: the same bytes however a data set is made, and labels that keep their word.
 
+#![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
+
 use std::collections::BTreeMap;
 use std::fs;
 use std::num::NonZeroUsize;
@@ -197,7 +199,8 @@ fn check_frame(made: &RenderedFrame) -> Found {
             }
             if k.reason == Visibility::Visible {
                 found.visible_keypoints += 1;
-                let near = at.iter().any(|i| (x(i) + 0.5 - u).abs() < 2.6 && (y(i) + 0.5 - v).abs() < 2.6);
+                let near =
+                    at.iter().any(|i| (x(i) + 0.5 - u).abs() < 2.6 && (y(i) + 0.5 - v).abs() < 2.6);
                 found.off_mask += usize::from(!near);
             }
         }

@@ -3,6 +3,8 @@
 //! The sources are read as text: every `crate::layer` in a file of a layer must be in that layer's
 //! row, and `super::super` is refused because it hides where a name comes from.
 
+#![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
+
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -22,8 +24,8 @@ const MAY_IMPORT: &[(&str, &[&str])] = &[
     (
         "job",
         &[
-            "base", "document", "library", "scene", "sampling", "geometry", "plan", "draw", "engine",
-            "label", "export",
+            "base", "document", "library", "scene", "sampling", "geometry", "plan", "draw",
+            "engine", "label", "export",
         ],
     ),
 ];
@@ -140,6 +142,7 @@ fn engines_share_no_code() {
 
 #[test]
 fn the_reader_of_imports_sees_groups_and_paths() {
-    let code = "use crate::base::rng;\nuse crate::{draw::{abi, X}, plan};\nlet a = crate::label::b();";
+    let code =
+        "use crate::base::rng;\nuse crate::{draw::{abi, X}, plan};\nlet a = crate::label::b();";
     assert_eq!(imported_layers(code), ["base", "draw", "plan", "label"]);
 }

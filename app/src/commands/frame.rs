@@ -41,10 +41,9 @@ pub fn run<R: Road>(
     let bytes = picture::png_rgb(&pixels, labels.width, labels.height).map_err(|e| failed(&e))?;
     atomic::write(out, &bytes).map_err(Failure::input)?;
     console.note(&format!(
-        "frame {} in {:.0} ms, {} people -> {}",
+        "frame {} in {:.0} ms -> {}",
         args.frame,
         made.times.total().as_secs_f64() * 1e3,
-        labels.people.iter().filter(|p| p.is_visible()).count(),
         out.display()
     ));
     Ok(Exit::Done)

@@ -214,11 +214,11 @@ impl Default for Environment {
     fn default() -> Self {
         Self {
             enabled: true,
-            sky_lux: 80.0.into(),
+            sky_lux: 1400.0.into(),
             sky_color: Color::srgb(0.8, 0.9, 1.0),
-            ground_lux: 40.0.into(),
+            ground_lux: 800.0.into(),
             ground_color: Color::srgb(1.0, 0.95, 0.9),
-            background_nits: 20.0.into(),
+            background_nits: 400.0.into(),
             background_color: Color::srgb(0.6, 0.75, 1.0),
         }
     }

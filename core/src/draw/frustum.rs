@@ -40,7 +40,9 @@ impl Frustum {
     /// Whether the shadow of a sphere may: the sphere swept away from the sun without end.
     #[must_use]
     pub fn sees_shadow(&self, center: DVec3, radius: f64, direction_to_sun: DVec3) -> bool {
-        self.planes.iter().all(|(n, d)| n.dot(center) + d >= -radius || n.dot(direction_to_sun) < 0.0)
+        self.planes
+            .iter()
+            .all(|(n, d)| n.dot(center) + d >= -radius || n.dot(direction_to_sun) < 0.0)
     }
 }
 

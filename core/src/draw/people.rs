@@ -9,7 +9,7 @@ use glam::{DAffine3, DVec3};
 use rayon::prelude::*;
 
 use super::objects::world_from_model;
-use super::{DrawError, DrawnPerson, Drawing, Relevance, abi, rows};
+use super::{DrawError, Drawing, DrawnPerson, Relevance, abi, rows};
 use crate::geometry::body::{RestBody, rest_body};
 use crate::geometry::person::{self, Dressed};
 use crate::geometry::points;
@@ -49,7 +49,9 @@ pub fn add(drawing: &mut Drawing) -> Result<(), DrawError> {
     let dressed: Vec<Option<Dressed>> = {
         let drawing = &*drawing;
         let level = |(p, r): (&Posed, &Relevance)| {
-            r.any().then(|| person::dress(&library.figure, p.person, &p.body, level_of_detail(drawing, p, *r)))
+            r.any().then(|| {
+                person::dress(&library.figure, p.person, &p.body, level_of_detail(drawing, p, *r))
+            })
         };
         posed.par_iter().zip(&relevances).map(level).collect()
     };

@@ -60,8 +60,12 @@ impl Surfaces {
         let detail_map = self.optional(detail, library, list)?;
         let mask = match surface.mask {
             Mask::None => None,
-            Mask::Skin => Some(self.shared("figure/skin_mask", list, || Arc::clone(library.figure.skin_mask()))),
-            Mask::Eye => Some(self.shared("figure/eye_mask", list, || Arc::clone(library.figure.eye_mask()))),
+            Mask::Skin => Some(
+                self.shared("figure/skin_mask", list, || Arc::clone(library.figure.skin_mask())),
+            ),
+            Mask::Eye => {
+                Some(self.shared("figure/eye_mask", list, || Arc::clone(library.figure.eye_mask())))
+            }
         };
         let made = abi::Material {
             base_color: surface.base_color,
@@ -88,7 +92,12 @@ impl Surfaces {
         id.map(|id| self.named(id, library, list)).transpose()
     }
 
-    fn named(&mut self, id: &str, library: &Library, list: &mut DrawList) -> Result<u32, DrawError> {
+    fn named(
+        &mut self,
+        id: &str,
+        library: &Library,
+        list: &mut DrawList,
+    ) -> Result<u32, DrawError> {
         if let Some(&index) = self.index_of_texture.get(id) {
             return Ok(index);
         }

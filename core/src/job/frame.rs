@@ -6,8 +6,8 @@
 use std::num::NonZeroUsize;
 use std::sync::Arc;
 
-use crate::document::{Document, Problem};
 use super::{FrameMaker, RenderedFrame};
+use crate::document::{Document, Problem};
 use crate::draw::{self, DrawError, DrawOptions, Drawn};
 use crate::engine::{Engine, EngineError};
 use crate::label;
@@ -111,7 +111,7 @@ impl Studio {
 
 fn catalogue(library: &Library) -> Catalogue {
     Catalogue {
-        face_targets: library.figure.face_target_names().to_vec(),
+        face_targets: library.figure.face_shape_names().map(str::to_owned).collect(),
         clips: library.clips.ids().map(str::to_owned).collect(),
         textures: library.surface_textures(),
         cloth_patterns: library.textures.ids(TextureGroup::Cloth).to_vec(),
@@ -124,9 +124,8 @@ impl FrameMaker for Studio {
     /// Samples a frame, renders it and labels it.
     fn make(&mut self, frame: u32) -> Result<RenderedFrame, FrameError> {
         let mut times = StageTimes::default();
-        let scene = times.measure("sample", || {
-            sampling::sample(&self.document, &self.catalogue, frame)
-        })?;
+        let scene =
+            times.measure("sample", || sampling::sample(&self.document, &self.catalogue, frame))?;
         let (drawn, rendered) = self.render_scene(&scene, &mut times)?;
         let annotations =
             times.measure("label", || label::annotate(&scene, &drawn, &rendered, &self.outputs));

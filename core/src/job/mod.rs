@@ -9,5 +9,5 @@ mod maker;
 pub mod progress;
 pub mod ranges;
 
-pub use maker::{FrameMaker, RenderedFrame};
 pub use frame::{FrameError, Studio};
+pub use maker::{FrameMaker, RenderedFrame};

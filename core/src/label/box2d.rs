@@ -34,7 +34,8 @@ mod tests {
 
     #[test]
     fn at_one_sample_it_is_the_mask_s_own_box() {
-        let seen = ObjectSamples { count: 6, min_16th: [16 * 3 + 8, 8], max_16th: [16 * 5 + 8, 24] };
+        let seen =
+            ObjectSamples { count: 6, min_16th: [16 * 3 + 8, 8], max_16th: [16 * 5 + 8, 24] };
         let mask = Extent { pixels: 6, min: [3, 0], max: [5, 1] };
         assert_eq!(visible_box(&seen, &mask, 1), [3.0, 0.0, 3.0, 2.0]);
     }

@@ -109,7 +109,11 @@ impl Seen<'_> {
         }
         let owner = self.owners.person(id).map(|k| &self.drawn.people[k]);
         if owner.is_some_and(|o| o.instance == self.person.instance) {
-            return if surface_m >= distance_m - tolerance_m { Shown::OwnLimb } else { Shown::OwnBody };
+            return if surface_m >= distance_m - tolerance_m {
+                Shown::OwnLimb
+            } else {
+                Shown::OwnBody
+            };
         }
         if surface_m < distance_m { Shown::InFront(id) } else { Shown::Behind }
     }
@@ -134,8 +138,8 @@ mod tests {
             keypoint_tolerance_m: [LIMB; 17],
             mass_kg: 70.0,
         };
-        let mut list = DrawList::default();
-        list.objects = vec![crate::draw::empty_object(), crate::draw::empty_object()];
+        let objects = vec![crate::draw::empty_object(), crate::draw::empty_object()];
+        let list = DrawList { objects, ..DrawList::default() };
         Drawn { list, objects: vec![Some(1)], people: vec![person] }
     }
 

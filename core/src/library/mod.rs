@@ -81,11 +81,8 @@ impl Library {
             ("figure/keypoints", "Apache-2.0", "Anny, NAVER Corp. 2025 (reduced)"),
             ("clips", "Zlib", "DeepMimic, as shipped with PyBullet 3.2.7"),
         ];
-        let shipped = shipped.map(|(id, licence, source)| Licence {
-            id: id.to_owned(),
-            licence,
-            source,
-        });
+        let shipped =
+            shipped.map(|(id, licence, source)| Licence { id: id.to_owned(), licence, source });
         let own = self.textures.ids(TextureGroup::Folder).iter().map(|id| Licence {
             id: id.clone(),
             licence: "NOASSERTION",

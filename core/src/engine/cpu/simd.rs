@@ -10,6 +10,11 @@
 //! What a kernel calls must be `#[inline(always)]`: a function, or a closure, that stands alone is
 //! compiled for the baseline and takes its vectors through memory.
 
+#![expect(
+    clippy::missing_transmute_annotations,
+    reason = "the intrinsic on one side and the lanes on the other fix the types"
+)]
+
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Shl, Shr, Sub};
 
 /// Number of lanes.

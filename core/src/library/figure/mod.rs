@@ -181,6 +181,12 @@ impl Figure {
         &self.data.local_names
     }
 
+    /// Names of those local targets that make a face somebody's own; expressions are left out.
+    pub fn face_shape_names(&self) -> impl Iterator<Item = &str> {
+        // Expressions are named in camel case, shapes with dashes.
+        self.data.local_names.iter().map(String::as_str).filter(|name| name.contains('-'))
+    }
+
     /// Index of a local target.
     ///
     /// # Errors
