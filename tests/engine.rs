@@ -1,5 +1,7 @@
 //! The native engine against the brute-force oracle, closed forms, and itself in other forms.
 
+#![allow(clippy::unwrap_used, reason = "helpers of tests, too, fail by panicking")]
+
 use std::sync::Arc;
 
 use figurant_core::draw::DrawList;
