@@ -128,9 +128,9 @@ fn compare_sums(name: &str, list: &DrawList, frame: &Frame, pixels: &[Vec<Sample
                 let (x, y) = (i as i32 % frame.width as i32, i as i32 / frame.width as i32);
                 let (sum, at) = (&mut sure[hit.object], [x * 16 + p[0], y * 16 + p[1]]);
                 sum.count += 1;
-                for axis in 0..2 {
-                    sum.min_16th[axis] = sum.min_16th[axis].min(at[axis]);
-                    sum.max_16th[axis] = sum.max_16th[axis].max(at[axis]);
+                for (axis, at) in at.into_iter().enumerate() {
+                    sum.min_16th[axis] = sum.min_16th[axis].min(at);
+                    sum.max_16th[axis] = sum.max_16th[axis].max(at);
                 }
             }
         }
@@ -602,8 +602,9 @@ fn lit(seed: u64, samples: u32) -> DrawList {
         color_cd: [2.0; 3],
         radius_m: 0.05,
     }];
-    let checks = (0..64 * 64)
-        .map(|i: u32| if (i % 64 / 8 + i / 512) % 2 == 0 { 0x00e0_d0c0 } else { 0x0030_4050 });
+    let checks = (0..64 * 64).map(|i: u32| {
+        if (i % 64 / 8 + i / 512).is_multiple_of(2) { 0x00e0_d0c0 } else { 0x0030_4050 }
+    });
     let mut texels: Vec<u32> = checks.collect();
     for level in 1..=6 {
         texels.resize(texels.len() + (1usize << (2 * (6 - level))), 0x0090_8878);

@@ -151,7 +151,7 @@ impl TilePass<'_> {
             self.shade::<S>(shading, origin_px, scratch);
             scratch.measure(Step::Display, |s| {
                 display::encode(self.level, &s.color, &mut s.bytes);
-                copy_out::<S, u8, 3>(tile, size, view.width, row.picture, &*s.bytes);
+                copy_out::<S, u8, 3>(tile, size, view.width, row.picture, &s.bytes);
             });
         }
         if self.resolves || self.reduces {
