@@ -107,7 +107,8 @@ pub struct Material {
     pub roughness: f32,
     /// 0..1.
     pub metallic: f32,
-    /// Linear texture of tangent-space normals.
+    /// Linear texture of tangent-space normals: x along growing u, y against v (up the picture),
+    /// z off the surface.
     pub normal_map: Option<u32>,
     /// Factor on the normal map's x and y.
     pub normal_strength: f32,
