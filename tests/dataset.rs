@@ -212,17 +212,19 @@ fn check_frame(made: &RenderedFrame) -> Found {
 fn hostile_configs_are_refused_with_their_field() {
     let folder = tempfile::tempdir().unwrap();
     let out = folder.path().join("out");
+    let seed = presets::find("peoplesanspeople").unwrap().text;
+    let crowded = seed.replace("\"separation_m\": 3", "\"separation_m\": 0");
     let cases = [
-        (r#"{"image": {"width": 0, "height": 64}}"#, "image.width"),
-        (r#"{"image": {"width": 100000, "height": 100000}}"#, "image"),
-        (r#"{"people": {"placement": {"poisson_disk": {"separation_m": 0}}}}"#, "separation_m"),
-        (r#"{"people": {"scale": {"uniform": [3, 1]}}}"#, "people.scale"),
-        (r#"{"frames": 1e999}"#, ""),
+        (r#"{"version": 1, "image": {"width": 0, "height": 64}}"#, "image.width"),
+        (r#"{"version": 1, "image": {"width": 100000, "height": 100000}}"#, "image"),
+        (crowded.as_str(), "people.placement.separation_m"),
+        (r#"{"version": 1, "people": {"scale": {"uniform": [3, 1]}}}"#, "people.scale"),
+        (r#"{"version": 1, "frames": 1e999}"#, "number"),
         (r#"{"version": 99}"#, "version"),
-        (r#"{"camra": {}}"#, "camera"),
-        (r#"{"assets": ["no-such-folder"]}"#, "no-such-folder"),
-        ("{\"name\": \"trunc", ""),
-        ("not json", ""),
+        (r#"{"version": 1, "camra": {}}"#, "camera"),
+        (r#"{"version": 1, "assets": ["no-such-folder"]}"#, "no-such-folder"),
+        ("{\"version\": 1, \"name\": \"trunc", "config"),
+        ("not json", "config"),
     ];
     for (text, named) in cases {
         let config = folder.path().join("config.json");

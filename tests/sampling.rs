@@ -1,6 +1,7 @@
 //! Document to scene: what seeds, frames and switches mean across all sections.
 
 use figurant_core::document::{Choice, Document, Param, Problem, file, presets};
+use figurant_core::library::textures::{TextureGroup, TextureLibrary};
 use figurant_core::sampling::{Catalogue, Counts, SampleError, check_assets, counts, sample};
 use figurant_core::scene::{Role, Scene, Sex};
 use serde_json::Value;
@@ -24,7 +25,10 @@ fn catalogue() -> Catalogue {
     Catalogue {
         face_targets: names("nose-scale", 60),
         clips: clips.map(str::to_owned).collect(),
-        textures: names("texture", 40),
+        textures: TextureLibrary::new(&[])
+            .expect("no folders")
+            .ids(TextureGroup::Procedural)
+            .to_vec(),
         cloth_patterns: names("pattern", 5),
     }
 }
@@ -74,7 +78,7 @@ fn the_seeds_ranges_are_kept_and_filled() {
         ("fov", 5.0, 50.0, vec![]),
         ("camera x", -5.0, 5.0, vec![]),
         ("camera z", 10.0, 20.0, vec![]),
-        ("exposure", 2.0, 7.0, vec![]),
+        ("exposure", 6.5, 11.5, vec![]),
         ("lamp", 5_000.0, 50_000.0, vec![]),
         ("person scale", 0.5, 3.0, vec![]),
         ("person z", -9.0, 6.0, vec![]),
@@ -290,7 +294,7 @@ fn assets_that_are_not_there_are_named() {
     let document = preset("peoplesanspeople");
     let error = sample(&document, &none, 0).unwrap_err();
     assert!(matches!(&error, SampleError::Assets(p) if p.0.len() == 2), "{error}");
-    assert!(sample(&preset("starter"), &none, 0).is_ok(), "plain surfaces need no texture");
+    assert!(sample(&preset("lineup"), &none, 0).is_ok(), "plain surfaces need no texture");
 }
 
 #[test]

@@ -250,8 +250,8 @@ fn volume_m3(figure: &Figure, skin: &[[f32; 3]]) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::super::phenotype::tests::average;
     use super::*;
+    use crate::geometry::phenotype::tests::average;
     use crate::scene::Sex;
 
     fn bodies() -> Vec<Body> {

@@ -402,9 +402,9 @@ fn sole_color(shoe: [f64; 3]) -> [f32; 3] {
 
 #[cfg(test)]
 mod tests {
-    use super::super::body::rest_body;
-    use super::super::phenotype::tests::average;
     use super::*;
+    use crate::geometry::body::rest_body;
+    use crate::geometry::phenotype::tests::average;
     use crate::scene::{Body, Bottom, BottomKind, Outfit, Placement, Pose, Sex, Shoes, Top};
     use glam::{DQuat, DVec3};
 

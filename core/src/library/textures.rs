@@ -327,8 +327,8 @@ mod tests {
             }
         }
         assert!(library.ids(TextureGroup::Folder).is_empty());
-        let error = library.get("procedural/brik/07").unwrap_err().to_string();
-        assert!(error.contains("did you mean \"procedural/brick/07\""), "{error}");
+        let error = library.get("procedural/brik/01").unwrap_err().to_string();
+        assert!(error.contains("did you mean \"procedural/brick/01\""), "{error}");
         for id in library.ids(TextureGroup::Procedural) {
             if let Some(normal) = library.normal_map(id) {
                 assert!(library.contains(&normal), "{normal}");

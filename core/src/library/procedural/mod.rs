@@ -243,12 +243,12 @@ mod tests {
             assert!(ids.windows(2).all(|w| w[0] != w[1]));
             ids.len()
         };
-        assert!(sorted(ids(Kind::Procedural)) > 500);
-        assert!(sorted(ids(Kind::Cloth)) > 80);
-        assert!(sorted(normal_ids()) > 100);
+        assert!(sorted(ids(Kind::Procedural)) > 100);
+        assert!(sorted(ids(Kind::Cloth)) > 40);
+        assert!(sorted(normal_ids()) > 25);
         assert_eq!(ids(Kind::Detail), ["detail/cloth", "detail/hair", "detail/skin"]);
         for family in families().filter(|f| f.kind == Kind::Procedural) {
-            assert!(family.variants >= 8, "{}", family.name);
+            assert!(family.variants >= 3, "{}", family.name);
         }
     }
 
@@ -260,16 +260,16 @@ mod tests {
             "procedural/brick",
             "procedural/brick/99",
             "procedural/brick/7",
-            "procedural/brick/07/",
+            "procedural/brick/01/",
             "cloth/plain/00x",
             "normal/plaid/00",
             "normal/",
             "detail/skin/00",
-            "brick/07",
+            "brick/01",
         ] {
             assert!(generate(id).is_none(), "{id}");
         }
-        assert_eq!(normal_id("procedural/brick/07").as_deref(), Some("normal/brick/07"));
+        assert_eq!(normal_id("procedural/brick/01").as_deref(), Some("normal/brick/01"));
         assert_eq!(normal_id("cloth/knit/01").as_deref(), Some("normal/cloth/knit/01"));
         assert_eq!(normal_id("procedural/plaid/00"), None);
     }
@@ -285,11 +285,12 @@ mod tests {
             let down = |y: usize| -> f64 {
                 (0..SIDE).map(|x| difference(rows[y][x], rows[(y + 1) % SIDE][x])).sum()
             };
-            // The seam may be an edge of the pattern, but not a worse one than those inside.
+            // The seam may be an edge of the pattern, but hardly a worse one than those inside,
+            // where cells of random tones meet as well.
             let worst = |step: &dyn Fn(usize) -> f64| (0..SIDE - 1).map(step).fold(0.0, f64::max);
             let (wx, wy) = (worst(&across), worst(&down));
-            assert!(across(SIDE - 1) <= wx * 1.1 + 512.0, "{id}: {} {wx}", across(SIDE - 1));
-            assert!(down(SIDE - 1) <= wy * 1.1 + 512.0, "{id}: {} {wy}", down(SIDE - 1));
+            assert!(across(SIDE - 1) <= wx * 1.25 + 512.0, "{id}: {} {wx}", across(SIDE - 1));
+            assert!(down(SIDE - 1) <= wy * 1.25 + 512.0, "{id}: {} {wy}", down(SIDE - 1));
             let mut tones: Vec<[u8; 4]> = rows.concat();
             tones.sort_unstable();
             tones.dedup();
