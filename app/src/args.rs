@@ -14,7 +14,7 @@ use crate::report::Style;
 use crate::road::Simd;
 
 const AFTER_HELP: &str = "Exit status: 0 done, 1 some frames failed (listed in report.json), \
-    2 wrong arguments or config, 3 no usable engine, 130 interrupted. \
+    2 wrong arguments, config or disk, 3 no usable engine, 130 interrupted. \
     Standard output carries data only.";
 
 /// Labelled pictures of people who do not exist.

@@ -9,7 +9,7 @@ pub enum Exit {
     Done,
     /// Some frames failed; everything else is written and valid.
     SomeFailed,
-    /// The arguments or the config are wrong.
+    /// The arguments or the config are wrong, or the disk they name cannot hold what is written.
     BadInput,
     /// Nothing here can render.
     NoEngine,

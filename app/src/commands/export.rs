@@ -35,7 +35,7 @@ pub fn run<R: Road>(
             reporter.clear();
             let exit = match &error {
                 BatchError::Maker(_) => Exit::NoEngine,
-                BatchError::Storage { .. } => Exit::SomeFailed,
+                BatchError::Storage { .. } => Exit::BadInput,
             };
             return Err(Failure::new(exit, error));
         }
