@@ -1,7 +1,9 @@
-//! What every layer stands on: conventions of space, keyed random numbers, hashes, colour and maths.
+//! What every layer stands on: conventions of space, keyed random numbers, hashes, caches, colour and
+//! maths.
 //!
 //! Values in, values out. Nothing here knows of documents, scenes or files.
 
+pub mod cache;
 pub mod color;
 pub mod hash;
 pub mod math;

@@ -13,11 +13,12 @@
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Mutex, PoisonError};
 
 use super::folder;
 use super::procedural::{self, Kind};
 use super::texture::Texture;
+use crate::base::cache::Cache;
 use crate::base::hash::content_hash;
 
 /// Default of [`TextureLibrary::with_memory_limit`]: about 380 textures of 512 x 512.
@@ -78,23 +79,9 @@ pub struct TextureLibrary {
     folder: Vec<String>,
     paths: BTreeMap<String, PathBuf>,
     max_log2_size: u32,
-    limit_bytes: usize,
-    cache: Mutex<Cache>,
-}
-
-#[derive(Debug, Default)]
-struct Cache {
-    entries: BTreeMap<String, Entry>,
+    cache: Cache<String, Texture>,
     /// Content hashes of pictures that were read, as 64 hexadecimal digits.
-    hashes: BTreeMap<String, String>,
-    size_bytes: usize,
-    clock: u64,
-}
-
-#[derive(Debug)]
-struct Entry {
-    texture: Arc<Texture>,
-    last_used: u64,
+    hashes: Mutex<BTreeMap<String, String>>,
 }
 
 impl TextureLibrary {
@@ -114,8 +101,8 @@ impl TextureLibrary {
             folder: Vec::new(),
             paths: BTreeMap::new(),
             max_log2_size: DEFAULT_LOG2_SIZE,
-            limit_bytes: DEFAULT_LIMIT_BYTES,
-            cache: Mutex::default(),
+            cache: Cache::new(DEFAULT_LIMIT_BYTES),
+            hashes: Mutex::default(),
         };
         let mut names: Vec<String> = Vec::new();
         for path in folders {
@@ -141,9 +128,8 @@ impl TextureLibrary {
     /// Sets how much memory textures may occupy before the one used longest ago is dropped, bytes.
     /// The last one always stays.
     #[must_use]
-    pub const fn with_memory_limit(mut self, bytes: usize) -> Self {
-        self.limit_bytes = bytes;
-        self
+    pub fn with_memory_limit(self, bytes: usize) -> Self {
+        Self { cache: Cache::new(bytes), ..self }
     }
 
     /// Sets the largest side of users' pictures as textures, as its log2, at most 12.
@@ -182,20 +168,23 @@ impl TextureLibrary {
     /// # Errors
     /// When there is none of that id, or its file cannot be read or used.
     pub fn get(&self, id: &str) -> Result<Arc<Texture>, TextureError> {
-        if let Some(texture) = self.cached(id) {
-            return Ok(texture);
-        }
-        // Made outside the lock: others need not wait. If two threads make the same one, both get
-        // the same bytes and one copy is kept.
-        let (texture, hash) = match self.paths.get(id) {
-            Some(path) => {
+        let mut normals = None;
+        let texture = self.cache.get_or_make(&id.to_owned(), Texture::size_bytes, || {
+            if let Some(path) = self.paths.get(id) {
                 let bytes = folder::read(path)?;
-                let texture = folder::decode(path, &bytes, self.max_log2_size)?;
-                (texture, Some(content_hash(&bytes)))
+                self.remember(id, content_hash(&bytes));
+                return folder::decode(path, &bytes, self.max_log2_size);
             }
-            None => (procedural::generate(id).ok_or_else(|| self.unknown(id))?, None),
-        };
-        Ok(self.keep(id, Arc::new(texture), hash))
+            let (texture, its_normals) =
+                procedural::generate(id).ok_or_else(|| self.unknown(id))?;
+            normals = its_normals;
+            Ok(texture)
+        })?;
+        // A painting's height is there with its colours: painting it again would cost the same.
+        if let (Some(normals), Some(id)) = (normals, self.normal_map(id)) {
+            self.cache.get_or_make(&id, Texture::size_bytes, || Ok::<_, TextureError>(normals))?;
+        }
+        Ok(texture)
     }
 
     /// What identifies a texture's content whatever its path: the BLAKE3 hash of a picture file as
@@ -207,18 +196,22 @@ impl TextureLibrary {
         let Some(path) = self.paths.get(id) else {
             return if self.contains(id) { Ok(id.to_owned()) } else { Err(self.unknown(id)) };
         };
-        if let Some(hash) = self.lock().hashes.get(id) {
+        if let Some(hash) = self.hashes.lock().unwrap_or_else(PoisonError::into_inner).get(id) {
             return Ok(hash.clone());
         }
         let hash = content_hash(&folder::read(path)?);
-        self.lock().hashes.insert(id.to_owned(), hash.clone());
+        self.remember(id, hash.clone());
         Ok(hash)
+    }
+
+    fn remember(&self, id: &str, hash: String) {
+        self.hashes.lock().unwrap_or_else(PoisonError::into_inner).insert(id.to_owned(), hash);
     }
 
     /// Bytes that the kept textures occupy.
     #[must_use]
     pub fn memory_bytes(&self) -> usize {
-        self.lock().size_bytes
+        self.cache.size_bytes()
     }
 
     fn all_groups(&self) -> impl Iterator<Item = &[String]> {
@@ -237,46 +230,6 @@ impl TextureLibrary {
             }
         }
         TextureError::Unknown { id: id.to_owned(), nearest: best.1 }
-    }
-
-    /// A thread that panicked leaves at worst a texture uncounted: the cache stays usable.
-    fn lock(&self) -> MutexGuard<'_, Cache> {
-        self.cache.lock().unwrap_or_else(PoisonError::into_inner)
-    }
-
-    fn cached(&self, id: &str) -> Option<Arc<Texture>> {
-        let mut cache = self.lock();
-        cache.clock += 1;
-        let now = cache.clock;
-        cache.entries.get_mut(id).map(|entry| {
-            entry.last_used = now;
-            Arc::clone(&entry.texture)
-        })
-    }
-
-    fn keep(&self, id: &str, texture: Arc<Texture>, hash: Option<String>) -> Arc<Texture> {
-        let mut cache = self.lock();
-        if let Some(hash) = hash {
-            cache.hashes.insert(id.to_owned(), hash);
-        }
-        if let Some(entry) = cache.entries.get(id) {
-            return Arc::clone(&entry.texture);
-        }
-        cache.clock += 1;
-        cache.size_bytes += texture.size_bytes();
-        let entry = Entry { texture: Arc::clone(&texture), last_used: cache.clock };
-        cache.entries.insert(id.to_owned(), entry);
-        while cache.size_bytes > self.limit_bytes && cache.entries.len() > 1 {
-            let oldest = cache
-                .entries
-                .iter()
-                .min_by_key(|(_, entry)| entry.last_used)
-                .map(|(id, _)| id.clone());
-            if let Some(entry) = oldest.and_then(|id| cache.entries.remove(&id)) {
-                cache.size_bytes -= entry.texture.size_bytes();
-            }
-        }
-        texture
     }
 }
 

@@ -192,15 +192,18 @@ fn family_of(id: &str) -> Option<&'static Family> {
     })
 }
 
-/// The texture of an id, or nothing if there is none of that name.
-pub(super) fn generate(id: &str) -> Option<Texture> {
+/// The texture of an id, with its normal map where it has one; nothing if there is none of that
+/// name.
+pub(super) fn generate(id: &str) -> Option<(Texture, Option<Texture>)> {
     let paint = |id: &str| family_of(id).map(|f| (f, (f.paint)(&mut Dice::new(id))));
+    let relief = |height: Field| normals(&height).into_texture(Encoding::Linear);
     let Some(of) = id.strip_prefix("normal/") else {
         let (family, painting) = paint(id)?;
-        return Some(painting.color.into_texture(family.kind.encoding()));
+        let normals = painting.height.filter(|_| family.relief).map(relief);
+        return Some((painting.color.into_texture(family.kind.encoding()), normals));
     };
     let (_, painting) = paint(of).or_else(|| paint(&format!("procedural/{of}")))?;
-    painting.height.map(|height| normals(&height).into_texture(Encoding::Linear))
+    painting.height.map(|height| (relief(height), None))
 }
 
 /// Tangent-space normals of a height: x along +u, y along -v (up in the picture), z outwards,
@@ -221,11 +224,24 @@ mod tests {
     use super::canvas::{LOG2_SIDE, SIDE};
     use super::*;
 
+    fn picture(id: &str) -> Texture {
+        generate(id).unwrap().0
+    }
+
+    #[test]
+    fn a_picture_brings_the_normal_map_of_its_name() {
+        for id in ["procedural/brick/01", "cloth/knit/00"] {
+            let normals = generate(id).unwrap().1.unwrap();
+            assert_eq!(normals, picture(&normal_id(id).unwrap()));
+        }
+        assert!(generate("procedural/plaid/00").unwrap().1.is_none());
+    }
+
     /// One texture of each family, and one of each normal map.
     fn samples() -> Vec<(String, Texture)> {
         let mut ids: Vec<String> = families().map(|f| f.id(f.variants / 2)).collect();
         ids.extend(ids.clone().iter().filter_map(|id| normal_id(id)));
-        ids.into_iter().map(|id| (id.clone(), generate(&id).unwrap())).collect()
+        ids.into_iter().map(|id| (id.clone(), picture(&id))).collect()
     }
 
     fn row(texture: &Texture, y: usize) -> impl Iterator<Item = [u8; 4]> + '_ {
@@ -301,10 +317,10 @@ mod tests {
     #[test]
     fn the_same_id_is_the_same_texture_and_another_is_another() {
         for family in families() {
-            let first = generate(&family.id(0)).unwrap();
-            assert_eq!(first, generate(&family.id(0)).unwrap(), "{}", family.name);
+            let first = picture(&family.id(0));
+            assert_eq!(first, picture(&family.id(0)), "{}", family.name);
             if family.variants > 1 {
-                assert_ne!(first, generate(&family.id(1)).unwrap(), "{}", family.name);
+                assert_ne!(first, picture(&family.id(1)), "{}", family.name);
             }
         }
     }
@@ -313,7 +329,7 @@ mod tests {
     fn cloth_is_light_and_detail_lies_round_the_middle() {
         for (kind, range) in [(Kind::Cloth, 120.0..250.0), (Kind::Detail, 120.0..136.0)] {
             for id in ids(kind) {
-                let texture = generate(&id).unwrap();
+                let texture = picture(&id);
                 let sum: f64 = texture.texels[..SIDE * SIDE]
                     .iter()
                     .map(|t| f64::from(t.to_le_bytes()[1]))
@@ -334,7 +350,7 @@ mod tests {
         let fall = normals(&Field::from_fn(|_, y| -(y as f32)));
         assert!(fall.0[100 * SIDE + 7][1] < 0.2, "falling downwards faces downwards");
         for id in normal_ids().iter().step_by(17) {
-            for t in &generate(id).unwrap().texels[..SIDE * SIDE] {
+            for t in &picture(id).texels[..SIDE * SIDE] {
                 let [x, y, z, _] = t.to_le_bytes().map(|v| f64::from(v) / 127.5 - 1.0);
                 assert!(z > 0.0 && ((x * x + y * y + z * z).sqrt() - 1.0).abs() < 0.02, "{id}");
             }
