@@ -24,7 +24,8 @@ fn studio(document: Document, simd: SimdChoice, threads: usize) -> Studio {
     let library = Library::new(&[], document.quality.max_texture_size).unwrap();
     let engine = CpuEngine::new(CpuOptions { simd, ..CpuOptions::default() });
     let threads = NonZeroUsize::new(threads).unwrap();
-    Studio::new(Arc::new(document), Arc::new(library), Box::new(engine), threads).unwrap()
+    Studio::new(Arc::new(document), Arc::new(library), Arc::default(), Box::new(engine), threads)
+        .unwrap()
 }
 
 /// Runs the program as the command line would.

@@ -6,6 +6,7 @@ use std::sync::Arc;
 
 use figurant_core::document::file::{self, FileError};
 use figurant_core::document::{self, Document, ImageFormat, presets};
+use figurant_core::draw::Cast;
 use figurant_core::engine::cpu::{CpuEngine, CpuOptions, SimdChoice};
 use figurant_core::export::{AssetLicence, DatasetInfo, PictureFormat};
 use figurant_core::job::{FrameError, Studio};
@@ -23,6 +24,7 @@ pub struct Native;
 pub struct Loaded {
     document: Arc<Document>,
     library: Arc<Library>,
+    cast: Arc<Cast>,
 }
 
 impl Road for Native {
@@ -51,9 +53,10 @@ impl Road for Native {
     }
 
     fn maker(&self, job: &Job<Loaded>, threads: NonZeroUsize) -> Result<Studio, FrameError> {
-        let Loaded { document, library } = &job.document;
+        let Loaded { document, library, cast } = &job.document;
         let engine = CpuEngine::new(CpuOptions { simd: choice(job.simd), ..CpuOptions::default() });
-        Studio::new(Arc::clone(document), Arc::clone(library), Box::new(engine), threads)
+        let (document, library) = (Arc::clone(document), Arc::clone(library));
+        Studio::new(document, library, Arc::clone(cast), Box::new(engine), threads)
     }
 
     fn engine(&self, simd: Simd) -> String {
@@ -96,7 +99,8 @@ fn prepare(
     invalid(document::validate(&document))?;
     let library = Library::new(folders, document.quality.max_texture_size)
         .map_err(|e| LoadError::Unreadable(e.to_string()))?;
-    let studio = Loaded { document: Arc::new(document), library: Arc::new(library) };
+    let studio =
+        Loaded { document: Arc::new(document), library: Arc::new(library), cast: Arc::default() };
     invalid(Studio::check_assets(&studio.document, &studio.library))?;
     Ok(Job {
         frames: studio.document.frames,
@@ -119,7 +123,7 @@ fn apply(wishes: &Wishes, document: &mut Document) {
     }
 }
 
-fn info(Loaded { document, library }: &Loaded) -> DatasetInfo {
+fn info(Loaded { document, library, .. }: &Loaded) -> DatasetInfo {
     DatasetInfo {
         config_json: file::text(document),
         program_version: env!("CARGO_PKG_VERSION").to_owned(),

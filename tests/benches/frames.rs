@@ -73,7 +73,8 @@ fn main() {
 
 fn studio(document: Document, simd: SimdChoice, library: &Arc<Library>) -> Studio {
     let engine = CpuEngine::new(CpuOptions { simd, ..CpuOptions::default() });
-    Studio::new(Arc::new(document), Arc::clone(library), Box::new(engine), NonZeroUsize::MIN)
+    let (library, cast) = (Arc::clone(library), Arc::default());
+    Studio::new(Arc::new(document), library, cast, Box::new(engine), NonZeroUsize::MIN)
         .expect("one thread can be had")
 }
 

@@ -45,6 +45,12 @@ impl Draws {
         Self { seed, frame, middle: false }
     }
 
+    /// The seed.
+    #[must_use]
+    pub const fn seed(self) -> u64 {
+        self.seed
+    }
+
     /// The same numbers, or, where `random` is false, one half in place of each: every parameter
     /// then takes its median. Streams stay random.
     #[must_use]

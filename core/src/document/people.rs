@@ -13,6 +13,10 @@ use crate::scene::{BottomKind, HairStyle, Sex};
 pub struct People {
     /// Where false, there is nobody.
     pub enabled: bool,
+    /// How many different people there are, over all frames; `null` for somebody new each time.
+    /// Who comes again has the same body, face, hair and cut of clothes; the clothes' colours, the
+    /// pose and the place are drawn anew. People who recur take no time to shape.
+    pub identities: Option<u32>,
     /// Where they stand.
     pub placement: Placement,
     /// Multiplies a person of normal size.
@@ -33,6 +37,7 @@ impl Default for People {
     fn default() -> Self {
         Self {
             enabled: true,
+            identities: Some(100),
             placement: Placement::PoissonDisk(PoissonDisk {
                 x_m: [-7.5, 7.5],
                 y_m: [-7.5, 7.5],

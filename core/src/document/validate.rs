@@ -14,6 +14,8 @@ use super::{
 
 /// People in a frame at most.
 pub const MAX_PEOPLE: u32 = 500;
+/// Different people at most.
+const MAX_IDENTITIES: u32 = 1_000_000;
 /// Occluders in a frame at most.
 pub const MAX_OBJECTS: u32 = 10_000;
 const MAX_LIGHTS: usize = 256;
@@ -232,6 +234,9 @@ fn placement(c: &mut Check, path: &str, placement: &Placement, limit: u32) {
 }
 
 fn people(c: &mut Check, people: &People) {
+    if let Some(count) = people.identities {
+        c.count("people.identities", count, 1, MAX_IDENTITIES);
+    }
     placement(c, "people.placement", &people.placement, MAX_PEOPLE);
     c.param("people.scale", &people.scale, Range::above(0.0, 100.0));
     c.rotation("people.rotation_deg", &people.rotation_deg);

@@ -8,6 +8,7 @@
 //! | file | what it does |
 //! |---|---|
 //! | [`abi`] | the structs both engines read |
+//! | `cast` | the people of earlier frames |
 //! | [`frustum`] | what the camera may see, and whose shadow it may see |
 //! | `lights` | lights in view space |
 //! | `objects` | walls, floors, occluders |
@@ -15,6 +16,7 @@
 //! | `surfaces` | materials and the textures they name |
 
 pub mod abi;
+mod cast;
 pub mod frustum;
 mod lights;
 mod objects;
@@ -24,6 +26,7 @@ mod surfaces;
 use glam::{DAffine3, DMat3, DVec3};
 
 pub use abi::DrawList;
+pub use cast::Cast;
 
 use crate::base::space::exposure_from_ev100;
 use crate::library::Library;
@@ -90,12 +93,17 @@ pub enum DrawError {
     Clip(#[from] ClipError),
 }
 
-/// Draws a scene.
+/// Draws a scene. What `cast` holds is reused; the result does not depend on it.
 ///
 /// # Errors
 /// When the scene names an asset that the library does not hold or cannot read.
-pub fn draw(scene: &Scene, library: &Library, options: &DrawOptions) -> Result<Drawn, DrawError> {
-    let mut drawing = Drawing::new(scene, library, *options);
+pub fn draw(
+    scene: &Scene,
+    library: &Library,
+    cast: &Cast,
+    options: &DrawOptions,
+) -> Result<Drawn, DrawError> {
+    let mut drawing = Drawing::new(scene, library, cast, *options);
     if options.shading {
         drawing.drawn.list.lights = lights::in_view(scene, &drawing.view_from_world);
     }
@@ -110,6 +118,7 @@ pub fn draw(scene: &Scene, library: &Library, options: &DrawOptions) -> Result<D
 struct Drawing<'a> {
     scene: &'a Scene,
     library: &'a Library,
+    cast: &'a Cast,
     options: DrawOptions,
     view_from_world: DAffine3,
     frustum: Frustum,
@@ -120,7 +129,7 @@ struct Drawing<'a> {
 }
 
 impl<'a> Drawing<'a> {
-    fn new(scene: &'a Scene, library: &'a Library, options: DrawOptions) -> Self {
+    fn new(scene: &'a Scene, library: &'a Library, cast: &'a Cast, options: DrawOptions) -> Self {
         let view_from_world = view_from_world(&scene.camera);
         let sun = scene.lights.sun.as_ref().filter(|s| s.shadow && options.shading);
         let list = DrawList {
@@ -133,6 +142,7 @@ impl<'a> Drawing<'a> {
         Self {
             scene,
             library,
+            cast,
             options,
             view_from_world,
             frustum: Frustum::new(&scene.camera),

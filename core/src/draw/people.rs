@@ -9,12 +9,13 @@ use glam::{DAffine3, DVec3};
 use rayon::prelude::*;
 
 use super::objects::world_from_model;
-use super::{DrawError, Drawing, DrawnPerson, Relevance, abi, rows};
-use crate::geometry::body::{RestBody, rest_body};
-use crate::geometry::person::{self, Dressed};
+use super::{Cast, DrawError, Drawing, DrawnPerson, Relevance, abi, rows};
+use crate::geometry::body::RestBody;
+use crate::geometry::person::{Dressed, MeshKey};
 use crate::geometry::points;
 use crate::geometry::pose::PosedSkeleton;
 use crate::geometry::skeleton::JOINT_COUNT;
+use crate::geometry::surface::surface;
 use crate::library::Library;
 use crate::library::figure::LOD_COUNT;
 use crate::scene::Person;
@@ -28,7 +29,8 @@ const COVER_M: f64 = 0.025;
 /// A person whose bones are settled.
 struct Posed<'a> {
     person: &'a Person,
-    body: RestBody,
+    key: MeshKey,
+    body: Arc<RestBody>,
     skeleton: PosedSkeleton,
     view_from_model: DAffine3,
     scale: f64,
@@ -39,26 +41,27 @@ struct Posed<'a> {
 /// Adds the scene's people: keypoints of all, meshes of those that matter to the picture.
 pub fn add(drawing: &mut Drawing) -> Result<(), DrawError> {
     let view_from_world = drawing.view_from_world;
-    let (scene, library) = (drawing.scene, drawing.library);
+    let (scene, library, cast) = (drawing.scene, drawing.library, drawing.cast);
     let posed: Vec<Posed> = scene
         .people
         .par_iter()
-        .map(|person| pose_one(person, library, &view_from_world))
+        .map(|person| pose_one(person, library, cast, &view_from_world))
         .collect::<Result<_, _>>()?;
     let relevances: Vec<Relevance> = posed.iter().map(|p| relevance(drawing, p)).collect();
-    let dressed: Vec<Option<Dressed>> = {
+    let dressed: Vec<Option<Arc<Dressed>>> = {
         let drawing = &*drawing;
-        let level = |(p, r): (&Posed, &Relevance)| {
-            r.any().then(|| {
-                person::dress(&library.figure, p.person, &p.body, level_of_detail(drawing, p, *r))
-            })
+        let dress = |(p, r): (&Posed, &Relevance)| {
+            let lod = level_of_detail(drawing, p, *r);
+            r.any()
+                .then(|| cast.dressed(&library.figure, p.key, p.person, &p.body, lod))
+                .transpose()
         };
-        posed.par_iter().zip(&relevances).map(level).collect()
+        posed.par_iter().zip(&relevances).map(dress).collect::<Result<_, _>>()?
     };
     for (index, ((posed, relevance), dressed)) in
         posed.iter().zip(&relevances).zip(dressed).enumerate()
     {
-        let object = dressed.map(|d| add_mesh(drawing, posed, *relevance, d)).transpose()?;
+        let object = dressed.map(|d| add_mesh(drawing, posed, *relevance, &d)).transpose()?;
         drawing.drawn.people.push(describe(index, posed, object));
     }
     Ok(())
@@ -67,10 +70,12 @@ pub fn add(drawing: &mut Drawing) -> Result<(), DrawError> {
 fn pose_one<'a>(
     person: &'a Person,
     library: &Library,
+    cast: &Cast,
     view_from_world: &DAffine3,
 ) -> Result<Posed<'a>, DrawError> {
     let clip = library.clips.get(&person.pose.clip)?;
-    let body = rest_body(&library.figure, &person.body, &person.look.face)?;
+    let key = MeshKey::new(person);
+    let body = cast.body(&library.figure, key, person)?;
     let frame = clip.sample(person.pose.phase);
     let mut skeleton = PosedSkeleton::new(&body.heads_m, &frame, person.pose.mirrored);
     skeleton.ground(body.ground.iter().map(|p| (p.rest_m, p.skin)));
@@ -81,6 +86,7 @@ fn pose_one<'a>(
         center_in_view: view_from_model.transform_point3(center),
         radius_m: radius_m * scale,
         person,
+        key,
         body,
         skeleton,
         view_from_model,
@@ -122,13 +128,14 @@ fn add_mesh(
     drawing: &mut Drawing,
     posed: &Posed,
     relevance: Relevance,
-    dressed: Dressed,
+    dressed: &Dressed,
 ) -> Result<u32, DrawError> {
     let list = &mut drawing.drawn.list;
     let index = list.objects.len() as u32;
     for part in &dressed.parts {
         let material = if drawing.options.shading && relevance.in_view {
-            drawing.surfaces.of_person(&part.surface, drawing.library, list)?
+            let surface = surface(part.kind, posed.person);
+            drawing.surfaces.of_person(&surface, drawing.library, list)?
         } else {
             drawing.surfaces.plain(list)
         };
@@ -143,7 +150,7 @@ fn add_mesh(
     let bones = posed.skeleton.model_from_rest.iter();
     list.palette.extend(bones.map(|m| rows(&(posed.view_from_model * *m))));
     list.objects.push(abi::DrawObject {
-        mesh: Arc::new(dressed.mesh),
+        mesh: Arc::clone(&dressed.mesh),
         view_from_model: rows(&posed.view_from_model),
         palette: first..list.palette.len() as u32,
         in_view: relevance.in_view,

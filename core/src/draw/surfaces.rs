@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use super::{DrawError, DrawList, abi};
-use crate::geometry::person::{Detail, Mask, Surface};
+use crate::geometry::surface::{Detail, Mask, Surface};
 use crate::library::Library;
 use crate::library::texture::Texture;
 use crate::scene;

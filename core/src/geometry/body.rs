@@ -65,6 +65,17 @@ pub struct RestBody {
     pub head_scale: f64,
 }
 
+impl RestBody {
+    /// Bytes that it occupies, about.
+    #[must_use]
+    pub const fn size_bytes(&self) -> usize {
+        size_of::<Self>()
+            + self.keypoints.capacity() * size_of::<KeypointRegressor>()
+            + self.ground.capacity() * size_of::<SkinPoint>()
+            + (self.shape.macros.capacity() + self.shape.locals.capacity()) * 16
+    }
+}
+
 /// Evaluates a body with its face targets.
 ///
 /// # Errors

@@ -8,6 +8,7 @@
 //! | [`phenotype`] | sliders -> weights of shape targets -> vertex positions |
 //! | [`body`] | joints, keypoints, contact points and measures of a body at rest |
 //! | [`person`] | a dressed person at rest: skin, eyes, hair and clothes as one mesh |
+//! | [`surface`] | what the parts of a person look like |
 //! | `garment`, `hair`, `cut` | clothes and hair, cut from shells along scalar fields |
 //! | [`skeleton`], [`pose`] | joints, and clips retargeted to a body |
 //! | [`points`] | poses single vertices in double precision |
@@ -23,3 +24,4 @@ pub mod points;
 pub mod pose;
 pub mod shape;
 pub mod skeleton;
+pub mod surface;

@@ -1,11 +1,12 @@
-//! A dressed person at rest: one mesh in parts, each with its surface.
+//! A dressed person at rest: one mesh in parts.
 //!
 //! Figure, person and rest body flow in, a [`Dressed`] mesh flows out, in model space with skin
 //! weights: soles at y = 0, facing +Z. A coarser level of detail costs proportionally less, since
-//! every level evaluates only a prefix of the vertices. Poses, textures' pixels and the camera are
-//! not known here.
+//! every level evaluates only a prefix of the vertices. What the parts look like is decided in
+//! [`super::surface`]; poses and the camera are not known here.
 
 use std::ops::Range;
+use std::sync::Arc;
 
 use glam::Vec3;
 
@@ -13,9 +14,10 @@ use super::body::{RestBody, SOLE_M};
 use super::cut::{Builder, Refined, Rim, Surface as Cloth, smooth_normals};
 use super::garment::{self, Cuts, Fields};
 use super::{hair, phenotype};
+use crate::base::hash::Hasher;
 use crate::library::figure::{Figure, GroupId, LOD_COUNT};
 use crate::library::mesh::{Mesh, SkinVertex};
-use crate::scene::{HairStyle, Look, Person};
+use crate::scene::{Body, HairStyle, Look, Person};
 
 /// What a part of a person is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -38,53 +40,6 @@ pub enum PartKind {
     Soles,
 }
 
-/// Which mask texture colours a surface's layers.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Mask {
-    /// None: the layers are unused.
-    None,
-    /// The figure's skin mask.
-    Skin,
-    /// The figure's eye mask.
-    Eye,
-}
-
-/// Kind of fine structure, to be looked up as a detail texture.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Detail {
-    /// Smooth.
-    None,
-    /// Pores and blotches.
-    Skin,
-    /// Woven cloth.
-    Cloth,
-    /// Strands along v.
-    Hair,
-}
-
-/// What a part looks like. Colours are linear.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Surface {
-    /// Multiplies the texture.
-    pub base_color: [f32; 3],
-    /// Perceptual roughness.
-    pub roughness: f32,
-    /// Light round the terminator, 0..0.5.
-    pub wrap: f32,
-    /// Mask of the layers.
-    pub mask: Mask,
-    /// Colour and roughness of the mask's four layers.
-    pub layers: [[f32; 4]; 4],
-    /// Cloth pattern: texture id in the library.
-    pub texture: Option<String>,
-    /// Rotation of the hue.
-    pub hue_offset_deg: f32,
-    /// Fine structure.
-    pub detail: Detail,
-    /// Its strength.
-    pub detail_strength: f32,
-}
-
 /// A range of a person's triangles with one surface.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Part {
@@ -94,15 +49,13 @@ pub struct Part {
     pub triangles: Range<u32>,
     /// Its back can be seen, through an opening of the cloth.
     pub double_sided: bool,
-    /// What it looks like.
-    pub surface: Surface,
 }
 
 /// A dressed person at rest.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Dressed {
     /// All parts, with skin weights.
-    pub mesh: Mesh,
+    pub mesh: Arc<Mesh>,
     /// Parts in a fixed order; empty ones are left out.
     pub parts: Vec<Part>,
 }
@@ -165,10 +118,46 @@ struct Parts {
 }
 
 impl Parts {
-    fn add(&mut self, kind: PartKind, triangles: Range<u32>, double_sided: bool, surface: Surface) {
+    fn add(&mut self, kind: PartKind, triangles: Range<u32>, double_sided: bool) {
         if !triangles.is_empty() {
-            self.parts.push(Part { kind, triangles, double_sided, surface });
+            self.parts.push(Part { kind, triangles, double_sided });
         }
+    }
+}
+
+/// What a person's mesh depends on, as a hash: those who share it differ in pose, place and colours
+/// only.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct MeshKey([u8; 32]);
+
+impl MeshKey {
+    /// The key of a person.
+    #[must_use]
+    pub fn new(person: &Person) -> Self {
+        let Person { body, look, outfit, .. } = person;
+        let Body {
+            sex,
+            age_years,
+            stature_m,
+            muscle,
+            weight,
+            proportions,
+            ancestry: [african, asian, european],
+            cup,
+            firmness,
+        } = *body;
+        let (top, bottom) = (&outfit.top, &outfit.bottom);
+        let mut hasher = Hasher::new();
+        hasher.bytes(&[sex as u8, look.hair as u8, bottom.kind as u8]);
+        let sizes = [age_years, stature_m, muscle, weight, proportions, african, asian, european];
+        let cuts = [cup, firmness, top.sleeve, top.neckline, top.looseness_m];
+        let ends = [bottom.length, bottom.looseness_m];
+        sizes.iter().chain(&cuts).chain(&ends).for_each(|v| hasher.number(*v));
+        for (name, amount) in &look.face {
+            hasher.bytes(name.as_bytes());
+            hasher.number(*amount);
+        }
+        Self(hasher.finish())
     }
 }
 
@@ -179,40 +168,34 @@ pub fn dress(figure: &Figure, person: &Person, rest: &RestBody, lod: usize) -> D
     let lod = lod.min(LOD_COUNT - 1);
     let cuts = Cuts::new(&person.outfit);
     let mut out = Parts { builder: Builder::default(), parts: Vec::new() };
-    add_skin(&mut out, figure, person, rest, &cuts, lod);
+    add_skin(&mut out, figure, rest, &cuts, lod);
     add_face(&mut out, figure, person, rest, lod);
     add_hair(&mut out, figure, &person.look, rest, lod);
-    add_clothes(&mut out, figure, person, rest, &cuts, lod);
+    add_clothes(&mut out, figure, rest, &cuts, lod);
     let mut mesh = out.builder.mesh;
     bound(&mut mesh);
-    Dressed { mesh, parts: out.parts }
+    mesh.shrink_to_fit();
+    Dressed { mesh: Arc::new(mesh), parts: out.parts }
 }
 
-fn add_skin(
-    out: &mut Parts,
-    figure: &Figure,
-    person: &Person,
-    rest: &RestBody,
-    cuts: &Cuts,
-    lod: usize,
-) {
+fn add_skin(out: &mut Parts, figure: &Figure, rest: &RestBody, cuts: &Cuts, lod: usize) {
     let mut skin = Evaluated::new(figure, rest, GroupId::Skin, lod);
     let count = skin.positions.len() as u32;
     let fields = garment::fields(figure, cuts, GroupId::Skin, count);
     let hidden = garment::hidden(figure, &fields, lod);
     garment::tuck(figure, &fields, lod, &mut skin.positions, &skin.normals);
     let range = out.builder.add_where(&skin.surface(), |t| !t.iter().all(|&v| hidden[v]));
-    out.add(PartKind::Skin, range, false, skin_surface(&person.look));
+    out.add(PartKind::Skin, range, false);
 }
 
 fn add_face(out: &mut Parts, figure: &Figure, person: &Person, rest: &RestBody, lod: usize) {
     let eyes = Evaluated::new(figure, rest, GroupId::Eyes, lod);
     let range = out.builder.add_where(&eyes.surface(), |_| true);
-    out.add(PartKind::Eyes, range, false, eye_surface(&person.look));
+    out.add(PartKind::Eyes, range, false);
     if opens_mouth(&person.look) {
         let teeth = Evaluated::new(figure, rest, GroupId::Teeth, lod);
         let range = out.builder.add_where(&teeth.surface(), |_| true);
-        out.add(PartKind::Teeth, range, true, plain([0.78, 0.74, 0.64], 0.25));
+        out.add(PartKind::Teeth, range, true);
     }
 }
 
@@ -241,17 +224,10 @@ fn add_hair(out: &mut Parts, figure: &Figure, look: &Look, rest: &RestBody, lod:
         let curtain = Evaluated::new(figure, rest, GroupId::HairCurtain, lod);
         end = out.builder.add_where(&curtain.surface(), |_| true).end;
     }
-    out.add(PartKind::Hair, cap.start..end, true, hair_surface(look));
+    out.add(PartKind::Hair, cap.start..end, true);
 }
 
-fn add_clothes(
-    out: &mut Parts,
-    figure: &Figure,
-    person: &Person,
-    rest: &RestBody,
-    cuts: &Cuts,
-    lod: usize,
-) {
+fn add_clothes(out: &mut Parts, figure: &Figure, rest: &RestBody, cuts: &Cuts, lod: usize) {
     let shell = Evaluated::new(figure, rest, GroupId::Shell, lod);
     let count = shell.positions.len() as u32;
     let fields = garment::fields(figure, cuts, GroupId::Shell, count);
@@ -269,28 +245,23 @@ fn add_clothes(
         let fine = Refined::new(&whole, &field, between);
         out.builder.add_cut(&fine.surface(), fine.field(), rim)
     };
-    let (top, bottom) = (&person.outfit.top, &person.outfit.bottom);
     let range = cut(out, &layers.bottom, rim, |f| f.bottom);
-    let surface = cloth(bottom.color, bottom.texture.as_ref(), bottom.hue_offset_deg);
-    out.add(PartKind::Bottom, range, true, surface);
+    out.add(PartKind::Bottom, range, true);
     let range = cut(out, &layers.top, rim, |f| f.top);
-    let surface = cloth(top.color, top.texture.as_ref(), top.hue_offset_deg);
-    out.add(PartKind::Top, range, true, surface);
+    out.add(PartKind::Top, range, true);
 
     // Shoes and soles meet a little above the ground.
     let edge_m = SOLE_M + 0.006;
-    let shoe = person.outfit.shoes.color;
     let split = |sign: f32| -> Vec<f32> {
         let edge = layers.shoes.iter().map(|p| sign * (p.y - edge_m));
         fields.iter().zip(edge).map(|(f, e)| f.shoes.min(e)).collect()
     };
     let normals = shell.normals_of(&layers.shoes);
-    for (kind, layer, sign, rim, color, roughness) in [
-        (PartKind::Shoes, &layers.shoes, 1.0, rim, narrow(shoe), 0.45),
-        (PartKind::Soles, &layers.soles, -1.0, None, sole_color(shoe), 0.8),
-    ] {
+    for (kind, layer, sign, rim) in
+        [(PartKind::Shoes, &layers.shoes, 1.0, rim), (PartKind::Soles, &layers.soles, -1.0, None)]
+    {
         let range = out.builder.add_cut(&shell.with(layer, &normals), &split(sign), rim);
-        out.add(kind, range, true, plain(color, roughness));
+        out.add(kind, range, true);
     }
 }
 
@@ -306,106 +277,12 @@ fn bound(mesh: &mut Mesh) {
     mesh.center = center.to_array();
 }
 
-fn narrow(color: [f64; 3]) -> [f32; 3] {
-    color.map(|c| c as f32)
-}
-
-fn tinted(color: [f32; 3], by: [f32; 3]) -> [f32; 3] {
-    std::array::from_fn(|i| (color[i] * by[i]).clamp(0.0, 1.0))
-}
-
-fn layer(color: [f32; 3], roughness: f32) -> [f32; 4] {
-    [color[0], color[1], color[2], roughness]
-}
-
-fn plain(base_color: [f32; 3], roughness: f32) -> Surface {
-    Surface {
-        base_color,
-        roughness,
-        wrap: 0.0,
-        mask: Mask::None,
-        layers: [[0.0; 4]; 4],
-        texture: None,
-        hue_offset_deg: 0.0,
-        detail: Detail::None,
-        detail_strength: 0.0,
-    }
-}
-
-fn skin_surface(look: &Look) -> Surface {
-    let skin = narrow(look.skin_color);
-    let hair = narrow(look.hair_color);
-    // Shaven heads show a shade of stubble; under hair the scalp takes its colour.
-    let scalp = match look.hair {
-        HairStyle::Bald => mix(skin, tinted(skin, [0.86, 0.84, 0.85]), 0.5),
-        HairStyle::Cropped => mix(skin, hair, 0.85),
-        HairStyle::Short | HairStyle::Afro | HairStyle::Long => mix(skin, hair, 0.95),
-    };
-    Surface {
-        wrap: 0.25,
-        mask: Mask::Skin,
-        layers: [
-            layer(tinted(skin, [0.78, 0.44, 0.43]), 0.40),
-            layer(mix(hair, tinted(skin, [0.5, 0.45, 0.42]), 0.25), 0.65),
-            layer(tinted(skin, [0.86, 0.58, 0.53]), 0.50),
-            layer(scalp, 0.60),
-        ],
-        detail: Detail::Skin,
-        detail_strength: 0.12,
-        ..plain(skin, 0.55)
-    }
-}
-
-fn mix(a: [f32; 3], b: [f32; 3], t: f32) -> [f32; 3] {
-    std::array::from_fn(|i| a[i] + (b[i] - a[i]) * t)
-}
-
-fn eye_surface(look: &Look) -> Surface {
-    let white = [0.72, 0.70, 0.68];
-    Surface {
-        mask: Mask::Eye,
-        layers: [
-            layer(narrow(look.iris_color), 0.12),
-            layer([0.008, 0.007, 0.007], 0.10),
-            layer(tinted(white, [0.82, 0.66, 0.62]), 0.20),
-            layer([0.9, 0.92, 0.95], 0.10),
-        ],
-        ..plain(white, 0.12)
-    }
-}
-
-fn hair_surface(look: &Look) -> Surface {
-    Surface {
-        detail: Detail::Hair,
-        detail_strength: 0.45,
-        wrap: 0.10,
-        ..plain(narrow(look.hair_color), 0.50)
-    }
-}
-
-fn cloth(color: [f64; 3], texture: Option<&String>, hue_offset_deg: f64) -> Surface {
-    Surface {
-        texture: texture.cloned(),
-        hue_offset_deg: hue_offset_deg as f32,
-        detail: Detail::Cloth,
-        detail_strength: 0.10,
-        ..plain(narrow(color), 0.85)
-    }
-}
-
-/// Rubber in the shoe's colour, darker if that is light and lighter if it is dark.
-fn sole_color(shoe: [f64; 3]) -> [f32; 3] {
-    let shoe = narrow(shoe);
-    let light = 0.2126 * shoe[0] + 0.7152 * shoe[1] + 0.0722 * shoe[2];
-    if light > 0.25 { tinted(shoe, [0.35, 0.33, 0.32]) } else { mix(shoe, [0.55, 0.53, 0.5], 0.35) }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::geometry::body::rest_body;
     use crate::geometry::phenotype::tests::average;
-    use crate::scene::{Body, Bottom, BottomKind, Outfit, Placement, Pose, Sex, Shoes, Top};
+    use crate::scene::{Bottom, BottomKind, Outfit, Placement, Pose, Sex, Shoes, Top};
     use glam::{DQuat, DVec3};
 
     fn person(i: usize) -> Person {
@@ -422,6 +299,7 @@ mod tests {
         let face = vec![("jawOpen".to_owned(), x), ("nose-hump-incr".to_owned(), 0.4)];
         Person {
             slot: 0,
+            identity: None,
             placement: Placement {
                 position_m: DVec3::ZERO,
                 rotation: DQuat::IDENTITY,
@@ -582,6 +460,30 @@ mod tests {
             }
             assert!(seen > 100, "only {seen} vertices were tested");
             assert!(outside == 0, "person {i}: {outside} of {seen} vertices outside");
+        }
+    }
+
+    #[test]
+    fn whoever_shares_a_key_shares_the_mesh() {
+        let p = person(4);
+        let key = MeshKey::new(&p);
+        let mut elsewhere = p.clone();
+        elsewhere.pose.phase = 0.5;
+        elsewhere.placement.position_m = DVec3::X;
+        elsewhere.outfit.top.color = [0.9; 3];
+        assert_eq!(MeshKey::new(&elsewhere), key);
+        let changes: [fn(&mut Person); 6] = [
+            |p| p.body.cup += 1e-9,
+            |p| p.body.sex = Sex::Female,
+            |p| p.look.face[1].1 += 0.01,
+            |p| p.look.hair = HairStyle::Short,
+            |p| p.outfit.bottom.kind = BottomKind::Shorts,
+            |p| p.outfit.top.sleeve += 0.01,
+        ];
+        for (i, change) in changes.into_iter().enumerate() {
+            let mut other = p.clone();
+            change(&mut other);
+            assert!(other == p || MeshKey::new(&other) != key, "{i}");
         }
     }
 

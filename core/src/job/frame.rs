@@ -8,7 +8,7 @@ use std::sync::Arc;
 
 use super::{FrameMaker, RenderedFrame};
 use crate::document::{Document, Problem};
-use crate::draw::{self, DrawError, DrawOptions, Drawn};
+use crate::draw::{self, Cast, DrawError, DrawOptions, Drawn};
 use crate::engine::{Engine, EngineError};
 use crate::label;
 use crate::library::Library;
@@ -46,6 +46,7 @@ pub struct ThreadError {
 pub struct Studio {
     document: Arc<Document>,
     library: Arc<Library>,
+    cast: Arc<Cast>,
     catalogue: Catalogue,
     outputs: Outputs,
     engine: Box<dyn Engine>,
@@ -54,13 +55,15 @@ pub struct Studio {
 
 impl Studio {
     /// A studio for a valid document whose assets are there ([`Self::check_assets`]), with some
-    /// threads of its own. What it makes does not depend on how many.
+    /// threads of its own. What it makes depends neither on how many nor on what `cast`, which
+    /// studios may share, holds already.
     ///
     /// # Errors
     /// When the system gives no threads.
     pub fn new(
         document: Arc<Document>,
         library: Arc<Library>,
+        cast: Arc<Cast>,
         engine: Box<dyn Engine>,
         threads: NonZeroUsize,
     ) -> Result<Self, FrameError> {
@@ -69,7 +72,7 @@ impl Studio {
             .build()
             .map_err(|source| ThreadError { threads, source })?;
         let (catalogue, outputs) = (catalogue(&library), document.output.outputs.clone());
-        Ok(Self { document, library, catalogue, outputs, engine, threads })
+        Ok(Self { document, library, cast, catalogue, outputs, engine, threads })
     }
 
     /// What a document names that the library does not hold.
@@ -96,9 +99,9 @@ impl Studio {
             shadow_map_size: self.document.quality.shadow_map_size,
             lod_error_px: self.document.quality.lod_error_px,
         };
-        let (library, engine) = (&self.library, &mut self.engine);
+        let (library, cast, engine) = (&self.library, &self.cast, &mut self.engine);
         self.threads.install(|| {
-            let drawn = times.measure("draw", || draw::draw(scene, library, &options))?;
+            let drawn = times.measure("draw", || draw::draw(scene, library, cast, &options))?;
             let frame = if plan.needs_engine() {
                 engine.render(&drawn.list, &plan, times)?
             } else {

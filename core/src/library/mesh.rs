@@ -22,6 +22,25 @@ pub struct Mesh {
     pub radius_m: f32,
 }
 
+impl Mesh {
+    /// Bytes that the arrays occupy.
+    #[must_use]
+    pub const fn size_bytes(&self) -> usize {
+        let vectors = self.positions.capacity() + self.normals.capacity();
+        let small = self.uvs.capacity() + self.skin.capacity();
+        12 * (vectors + self.triangles.capacity()) + 8 * small
+    }
+
+    /// Gives back memory beyond what the arrays need.
+    pub fn shrink_to_fit(&mut self) {
+        self.positions.shrink_to_fit();
+        self.normals.shrink_to_fit();
+        self.uvs.shrink_to_fit();
+        self.skin.shrink_to_fit();
+        self.triangles.shrink_to_fit();
+    }
+}
+
 /// Up to four joints of one vertex.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[repr(C)]

@@ -1,14 +1,15 @@
 //! Body shapes.
 
 use super::keys;
+use super::people::Source;
 use super::quantile;
 use super::value::{item, number};
-use crate::base::rng::{Draw, Draws};
+use crate::base::rng::Draw;
 use crate::document::{self, Ancestry, Auto, Normal, Origin};
 use crate::scene::{Body, Sex};
 
-pub(super) fn body(body: &document::Body, draws: Draws, slot: u32) -> Body {
-    let of = |key| draws.of(key, slot);
+pub(super) fn body(body: &document::Body, source: Source) -> Body {
+    let of = |key| source.of(key);
     let sex = *item(&body.sex, of(keys::SEX));
     let age_years = number(&body.age_years, of(keys::AGE));
     Body {
@@ -132,7 +133,7 @@ pub(super) fn interpolate(points: &[(f64, f64)], x: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::base::rng::Key;
+    use crate::base::rng::{Draws, Key};
 
     fn all(law: &Ancestry) -> Vec<[f64; 3]> {
         let draw = |i| Draws::new(2, i).of(Key::new("test"), 0);

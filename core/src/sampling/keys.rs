@@ -60,6 +60,7 @@ keys! {
     PERSON_COUNT = "people.placement.count",
     PERSON_SCALE = "people.scale",
     PERSON_ROTATION = "people.rotation",
+    IDENTITY = "people.identities",
     AGE = "people.body.age",
     SEX = "people.body.sex",
     STATURE = "people.body.stature",

@@ -4,10 +4,10 @@ use std::collections::BTreeSet;
 
 use super::body::interpolate;
 use super::keys;
-use super::people::PersonTraits;
+use super::people::{PersonTraits, Source};
 use super::quantile;
 use super::value::{color, item, linear, number};
-use crate::base::rng::{Draw, Draws, Stream};
+use crate::base::rng::{Draw, Stream};
 use crate::document::{self, Auto};
 use crate::scene::{HairStyle, Look, Sex};
 
@@ -87,10 +87,9 @@ pub(super) fn look(
     look: &document::Look,
     faces: &[FaceShape],
     traits: PersonTraits,
-    draws: Draws,
-    slot: u32,
+    source: Source,
 ) -> Look {
-    let of = |key| draws.random_if(look.enabled).of(key, slot);
+    let of = |key| source.random_if(look.enabled).of(key);
     let given = |auto: &Auto<document::Color>, key, otherwise: &dyn Fn(Draw) -> [f64; 3]| match auto
     {
         Auto::Auto(_) => otherwise(of(key)),
@@ -107,7 +106,7 @@ pub(super) fn look(
             hair_color(traits, draw, greying)
         }),
         iris_color: given(&look.iris_color, keys::IRIS, &|draw| iris(traits, draw)),
-        face: if look.enabled { face(look, faces, draws, slot) } else { Vec::new() },
+        face: if look.enabled { face(look, faces, source) } else { Vec::new() },
     }
 }
 
@@ -170,20 +169,15 @@ fn hair_style(traits: PersonTraits, draw: Draw) -> HairStyle {
 }
 
 /// Some shapes, each with the absolute value of a normal.
-fn face(
-    look: &document::Look,
-    shapes: &[FaceShape],
-    draws: Draws,
-    slot: u32,
-) -> Vec<(String, f64)> {
-    let wanted = number(&look.face_targets, draws.of(keys::FACE_COUNT, slot)).round() as usize;
-    let mut order: Stream = draws.of(keys::FACE_ORDER, slot).stream();
+fn face(look: &document::Look, shapes: &[FaceShape], source: Source) -> Vec<(String, f64)> {
+    let wanted = number(&look.face_targets, source.of(keys::FACE_COUNT)).round() as usize;
+    let mut order: Stream = source.of(keys::FACE_ORDER).stream();
     let mut rest: Vec<usize> = (0..shapes.len()).collect();
     let mut face = Vec::new();
     for _ in 0..wanted.min(shapes.len()) {
         let shape = rest.swap_remove(order.below(rest.len()));
         // By the shape's own number: which others were chosen changes nothing.
-        let u = draws.of(keys::FACE_AMOUNT, slot).lane(shape as u16).uniform();
+        let u = source.of(keys::FACE_AMOUNT).lane(shape as u16).uniform();
         let strong = shapes[shape].iter().any(|name| STRONG.iter().any(|s| name.contains(s)));
         let std = if strong { look.face_std.min(STRONG_STD) } else { look.face_std };
         let amount = (std * quantile::normal(u)).abs().min(look.face_max);
@@ -196,7 +190,7 @@ fn face(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::base::rng::Key;
+    use crate::base::rng::{Draws, Key};
 
     fn traits(sex: Sex, age_years: f64, ancestry: [f64; 3]) -> PersonTraits {
         PersonTraits { sex, age_years, ancestry }
@@ -254,7 +248,7 @@ mod tests {
         assert_eq!(shapes.len(), 4);
         let law = document::Look { face_targets: 3.0.into(), ..document::Look::default() };
         for frame in 0..50 {
-            let face = face(&law, &shapes, Draws::new(1, frame), 0);
+            let face = face(&law, &shapes, Source::new(Draws::new(1, frame), 0));
             let of = |name: &str| face.iter().find(|f| f.0 == name).map(|f| f.1);
             assert_eq!(of("ears/l-ear-up"), of("ears/r-ear-up"));
             assert_eq!(of("l-eye-big"), of("r-eye-big"));

@@ -6,7 +6,7 @@ use super::background::asset;
 use super::place::{PEOPLE, places};
 use super::value::{flag, number, rotation};
 use super::{Catalogue, body, keys, look, outfit};
-use crate::base::rng::Draws;
+use crate::base::rng::{Draw, Draws, Key};
 use crate::document;
 use crate::scene::{Body, Person, Placement, Pose, Sex};
 
@@ -20,24 +20,85 @@ pub(super) fn people(
     }
     let faces = look::face_shapes(&catalogue.face_targets);
     let places = places(&people.placement, &PEOPLE, draws).points;
+    let identities = people.identities.map(|count| Identities::new(count, draws));
     let person = |(slot, position_m)| {
-        let body = body::body(&people.body, draws.random_if(people.body.enabled), slot);
+        let here = Source::new(draws, slot);
+        let identity = identities.map(|i| i.of_slot(slot));
+        // Whoever recurs has the numbers of an identity instead of those of a frame.
+        let of_identity = |id| Source::new(Draws::new(draws.seed(), id), 0);
+        let lasting = identity.map_or(here, of_identity);
+        let body = body::body(&people.body, lasting.random_if(people.body.enabled));
         let traits = PersonTraits::new(&body);
         let turn = draws.of(keys::PERSON_ROTATION, slot);
         Person {
             slot,
+            identity,
             placement: Placement {
                 position_m,
                 rotation: rotation(&people.rotation_deg, DVec3::ZERO, turn),
                 scale: DVec3::splat(number(&people.scale, draws.of(keys::PERSON_SCALE, slot))),
             },
-            look: look::look(&people.look, &faces, traits, draws, slot),
-            outfit: outfit::outfit(&people.wardrobe, &catalogue.cloth_patterns, draws, slot),
-            pose: pose(&people.pose, &catalogue.clips, draws, slot),
+            look: look::look(&people.look, &faces, traits, lasting),
+            outfit: outfit::outfit(&people.wardrobe, &catalogue.cloth_patterns, lasting, here),
+            pose: pose(&people.pose, &catalogue.clips, here),
             body,
         }
     };
     places.into_iter().map(person).collect()
+}
+
+/// Where a person's random numbers come from: a slot of the frame, or what lasts over frames.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Source {
+    draws: Draws,
+    slot: u32,
+}
+
+impl Source {
+    pub(super) const fn new(draws: Draws, slot: u32) -> Self {
+        Self { draws, slot }
+    }
+
+    pub(super) const fn random_if(self, random: bool) -> Self {
+        Self { draws: self.draws.random_if(random), ..self }
+    }
+
+    pub(super) const fn of(self, key: Key) -> Draw {
+        self.draws.of(key, self.slot)
+    }
+}
+
+/// Who of a fixed number of people stands in which slot of a frame: `(first + slot * step) mod
+/// count` with the step prime to the count, so that nobody is there twice before everybody is, and
+/// no slot's person depends on how many slots there are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Identities {
+    count: u32,
+    first: u32,
+    step: u32,
+}
+
+impl Identities {
+    fn new(count: u32, draws: Draws) -> Self {
+        let mut stream = draws.of(keys::IDENTITY, 0).stream();
+        let mut below = || stream.below(count as usize) as u32;
+        let first = below();
+        // Most numbers are prime to the count, 1 always is.
+        let step = (0..64).map(|_| below()).find(|&s| greatest_common_divisor(s, count) == 1);
+        Self { count, first, step: step.unwrap_or(1) }
+    }
+
+    const fn of_slot(self, slot: u32) -> u32 {
+        let (count, step) = (self.count as u64, self.step as u64);
+        ((self.first as u64 + slot as u64 * step) % count) as u32
+    }
+}
+
+const fn greatest_common_divisor(mut a: u32, mut b: u32) -> u32 {
+    while b != 0 {
+        (a, b) = (b, a % b);
+    }
+    a
 }
 
 /// What looks follow from.
@@ -57,11 +118,39 @@ impl PersonTraits {
     }
 }
 
-fn pose(pose: &document::Pose, clips: &[String], draws: Draws, slot: u32) -> Pose {
-    let of = |key| draws.random_if(pose.enabled).of(key, slot);
+fn pose(pose: &document::Pose, clips: &[String], source: Source) -> Pose {
+    let source = source.random_if(pose.enabled);
     Pose {
-        clip: asset(&pose.clip, clips, of(keys::CLIP)).unwrap_or_default(),
-        phase: number(&pose.phase, of(keys::PHASE)),
-        mirrored: flag(&pose.mirrored, of(keys::MIRRORED)),
+        clip: asset(&pose.clip, clips, source.of(keys::CLIP)).unwrap_or_default(),
+        phase: number(&pose.phase, source.of(keys::PHASE)),
+        mirrored: flag(&pose.mirrored, source.of(keys::MIRRORED)),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeSet;
+
+    use super::*;
+
+    #[test]
+    fn nobody_is_in_a_frame_twice_and_everybody_comes_as_often() {
+        for count in [1, 2, 28, 100, 997] {
+            let mut times = vec![0u32; count as usize];
+            for frame in 0..4000 {
+                let identities = Identities::new(count, Draws::new(5, frame));
+                let who: Vec<u32> = (0..20).map(|slot| identities.of_slot(slot)).collect();
+                let different: BTreeSet<u32> = who.iter().copied().collect();
+                assert_eq!(different.len(), 20.min(count as usize));
+                who.iter().for_each(|&id| times[id as usize] += 1);
+            }
+            // Chi squared over count - 1 degrees of freedom, within five standard deviations; the
+            // draws of a frame exclude each other, which only lowers it.
+            let expected = 80_000.0 / f64::from(count);
+            let chi2: f64 =
+                times.iter().map(|&n| (f64::from(n) - expected).powi(2) / expected).sum();
+            let freedom = f64::from(count - 1);
+            assert!(chi2 <= freedom + 5.0 * (2.0 * freedom).sqrt(), "{count}: {chi2}");
+        }
     }
 }

@@ -9,6 +9,9 @@ use super::Placement;
 pub struct Person {
     /// The slot that keyed this person's values; stable when others come or go.
     pub slot: u32,
+    /// Who of the people that recur over frames it is; absent if nobody does.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub identity: Option<u32>,
     /// Where the person stands: the model's origin is on the ground between the feet at rest,
     /// and the posed body's lowest point touches model y = 0.
     pub placement: Placement,

@@ -1,0 +1,165 @@
+//! What the parts of a person look like: colours, masks and fine structure.
+//!
+//! A person's look and outfit flow in, one [`Surface`] for each kind of part flows out. Meshes are
+//! made in [`super::person`]; textures' pixels are not known here.
+
+use super::person::PartKind;
+use crate::scene::{HairStyle, Look, Person};
+
+/// Which mask texture colours a surface's layers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Mask {
+    /// None: the layers are unused.
+    None,
+    /// The figure's skin mask.
+    Skin,
+    /// The figure's eye mask.
+    Eye,
+}
+
+/// Kind of fine structure, to be looked up as a detail texture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Detail {
+    /// Smooth.
+    None,
+    /// Pores and blotches.
+    Skin,
+    /// Woven cloth.
+    Cloth,
+    /// Strands along v.
+    Hair,
+}
+
+/// What a part looks like. Colours are linear.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Surface {
+    /// Multiplies the texture.
+    pub base_color: [f32; 3],
+    /// Perceptual roughness.
+    pub roughness: f32,
+    /// Light round the terminator, 0..0.5.
+    pub wrap: f32,
+    /// Mask of the layers.
+    pub mask: Mask,
+    /// Colour and roughness of the mask's four layers.
+    pub layers: [[f32; 4]; 4],
+    /// Cloth pattern: texture id in the library.
+    pub texture: Option<String>,
+    /// Rotation of the hue.
+    pub hue_offset_deg: f32,
+    /// Fine structure.
+    pub detail: Detail,
+    /// Its strength.
+    pub detail_strength: f32,
+}
+
+/// The surface of a part of a person.
+#[must_use]
+pub fn surface(kind: PartKind, person: &Person) -> Surface {
+    let (look, outfit) = (&person.look, &person.outfit);
+    let (top, bottom, shoe) = (&outfit.top, &outfit.bottom, outfit.shoes.color);
+    match kind {
+        PartKind::Skin => skin_surface(look),
+        PartKind::Eyes => eye_surface(look),
+        PartKind::Teeth => plain([0.78, 0.74, 0.64], 0.25),
+        PartKind::Hair => hair_surface(look),
+        PartKind::Top => cloth(top.color, top.texture.as_ref(), top.hue_offset_deg),
+        PartKind::Bottom => cloth(bottom.color, bottom.texture.as_ref(), bottom.hue_offset_deg),
+        PartKind::Shoes => plain(narrow(shoe), 0.45),
+        PartKind::Soles => plain(sole_color(shoe), 0.8),
+    }
+}
+
+fn narrow(color: [f64; 3]) -> [f32; 3] {
+    color.map(|c| c as f32)
+}
+
+fn tinted(color: [f32; 3], by: [f32; 3]) -> [f32; 3] {
+    std::array::from_fn(|i| (color[i] * by[i]).clamp(0.0, 1.0))
+}
+
+fn layer(color: [f32; 3], roughness: f32) -> [f32; 4] {
+    [color[0], color[1], color[2], roughness]
+}
+
+fn plain(base_color: [f32; 3], roughness: f32) -> Surface {
+    Surface {
+        base_color,
+        roughness,
+        wrap: 0.0,
+        mask: Mask::None,
+        layers: [[0.0; 4]; 4],
+        texture: None,
+        hue_offset_deg: 0.0,
+        detail: Detail::None,
+        detail_strength: 0.0,
+    }
+}
+
+fn skin_surface(look: &Look) -> Surface {
+    let skin = narrow(look.skin_color);
+    let hair = narrow(look.hair_color);
+    // Shaven heads show a shade of stubble; under hair the scalp takes its colour.
+    let scalp = match look.hair {
+        HairStyle::Bald => mix(skin, tinted(skin, [0.86, 0.84, 0.85]), 0.5),
+        HairStyle::Cropped => mix(skin, hair, 0.85),
+        HairStyle::Short | HairStyle::Afro | HairStyle::Long => mix(skin, hair, 0.95),
+    };
+    Surface {
+        wrap: 0.25,
+        mask: Mask::Skin,
+        layers: [
+            layer(tinted(skin, [0.78, 0.44, 0.43]), 0.40),
+            layer(mix(hair, tinted(skin, [0.5, 0.45, 0.42]), 0.25), 0.65),
+            layer(tinted(skin, [0.86, 0.58, 0.53]), 0.50),
+            layer(scalp, 0.60),
+        ],
+        detail: Detail::Skin,
+        detail_strength: 0.12,
+        ..plain(skin, 0.55)
+    }
+}
+
+fn mix(a: [f32; 3], b: [f32; 3], t: f32) -> [f32; 3] {
+    std::array::from_fn(|i| a[i] + (b[i] - a[i]) * t)
+}
+
+fn eye_surface(look: &Look) -> Surface {
+    let white = [0.72, 0.70, 0.68];
+    Surface {
+        mask: Mask::Eye,
+        layers: [
+            layer(narrow(look.iris_color), 0.12),
+            layer([0.008, 0.007, 0.007], 0.10),
+            layer(tinted(white, [0.82, 0.66, 0.62]), 0.20),
+            layer([0.9, 0.92, 0.95], 0.10),
+        ],
+        ..plain(white, 0.12)
+    }
+}
+
+fn hair_surface(look: &Look) -> Surface {
+    Surface {
+        detail: Detail::Hair,
+        detail_strength: 0.45,
+        wrap: 0.10,
+        ..plain(narrow(look.hair_color), 0.50)
+    }
+}
+
+fn cloth(color: [f64; 3], texture: Option<&String>, hue_offset_deg: f64) -> Surface {
+    Surface {
+        texture: texture.cloned(),
+        hue_offset_deg: hue_offset_deg as f32,
+        detail: Detail::Cloth,
+        detail_strength: 0.10,
+        ..plain(narrow(color), 0.85)
+    }
+}
+
+/// Rubber in the shoe's colour, darker if that is light and lighter if it is dark.
+fn sole_color(shoe: [f64; 3]) -> [f32; 3] {
+    let shoe = narrow(shoe);
+    let light = 0.2126 * shoe[0] + 0.7152 * shoe[1] + 0.0722 * shoe[2];
+    if light > 0.25 { tinted(shoe, [0.35, 0.33, 0.32]) } else { mix(shoe, [0.55, 0.53, 0.5], 0.35) }
+}
