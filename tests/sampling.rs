@@ -2,7 +2,7 @@
 
 use figurant_core::document::{Choice, Document, Param, Problem, file, presets};
 use figurant_core::library::textures::{TextureGroup, TextureLibrary};
-use figurant_core::sampling::{Catalogue, Counts, SampleError, check_assets, counts, sample};
+use figurant_core::sampling::{Catalogue, Counts, SampleError, Sampler, check_assets, counts};
 use figurant_core::scene::{Role, Scene, Sex};
 use serde_json::Value;
 
@@ -36,6 +36,10 @@ fn catalogue() -> Catalogue {
 fn preset(name: &str) -> Document {
     let text = presets::find(name).expect("the preset ships with the program").text;
     file::parse(text).expect("a test of the presets themselves says why")
+}
+
+fn sample(document: &Document, catalogue: &Catalogue, frame: u32) -> Result<Scene, SampleError> {
+    Ok(Sampler::new(document.clone().into(), catalogue.clone())?.scene(frame))
 }
 
 fn scene(document: &Document, frame: u32) -> Scene {

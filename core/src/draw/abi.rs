@@ -25,7 +25,7 @@ pub struct DrawList {
     pub lights: Lights,
     /// Linear scale from nits to the sensor's 0..1.
     pub exposure: f32,
-    /// Side of the sun's shadow map in texels, a multiple of 64.
+    /// Largest side of the sun's shadow map in texels, a multiple of 64.
     pub shadow_map_size: u32,
     /// Samples per pixel: 1, 4 or 16.
     pub samples: u32,

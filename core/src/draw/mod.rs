@@ -73,7 +73,7 @@ pub struct DrawOptions {
     pub shading: bool,
     /// Samples a pixel: 1, 4 or 16.
     pub samples: u32,
-    /// Side of the sun's shadow map, texels.
+    /// Largest side of the sun's shadow map, texels.
     pub shadow_map_size: u32,
     /// Largest error of a level of detail, pixels.
     pub lod_error_px: f64,

@@ -14,13 +14,13 @@ use crate::label;
 use crate::library::Library;
 use crate::library::textures::TextureGroup;
 use crate::plan::{Frame, Outputs, Pass, PassPlan, SceneFacts, StageTimes};
-use crate::sampling::{self, Catalogue, SampleError};
+use crate::sampling::{self, Catalogue, SampleError, Sampler};
 use crate::scene::Scene;
 
 /// A frame that cannot be made.
 #[derive(Debug, thiserror::Error)]
 pub enum FrameError {
-    /// The document has no such frame.
+    /// The document cannot be sampled.
     #[error("sampling: {0}")]
     Sample(#[from] SampleError),
     /// The scene names something that the library does not hold.
@@ -44,22 +44,21 @@ pub struct ThreadError {
 
 /// A document, what it draws from and what renders it.
 pub struct Studio {
-    document: Arc<Document>,
+    sampler: Sampler,
     library: Arc<Library>,
     cast: Arc<Cast>,
-    catalogue: Catalogue,
     outputs: Outputs,
     engine: Box<dyn Engine>,
     threads: rayon::ThreadPool,
 }
 
 impl Studio {
-    /// A studio for a valid document whose assets are there ([`Self::check_assets`]), with some
-    /// threads of its own. What it makes depends neither on how many nor on what `cast`, which
+    /// A studio for a document, with some threads of its own. What it makes depends neither on how many nor on what `cast`, which
     /// studios may share, holds already.
     ///
     /// # Errors
-    /// When the system gives no threads.
+    /// When the document makes no sense or names assets that are not there
+    /// ([`Self::check_assets`]), or the system gives no threads.
     pub fn new(
         document: Arc<Document>,
         library: Arc<Library>,
@@ -71,8 +70,9 @@ impl Studio {
             .num_threads(threads.get())
             .build()
             .map_err(|source| ThreadError { threads, source })?;
-        let (catalogue, outputs) = (catalogue(&library), document.output.outputs.clone());
-        Ok(Self { document, library, cast, catalogue, outputs, engine, threads })
+        let outputs = document.output.outputs.clone();
+        let sampler = Sampler::new(document, catalogue(&library))?;
+        Ok(Self { sampler, library, cast, outputs, engine, threads })
     }
 
     /// What a document names that the library does not hold.
@@ -92,12 +92,13 @@ impl Studio {
     ) -> Result<(Drawn, Frame), FrameError> {
         let sun_shadow = scene.lights.sun.as_ref().is_some_and(|s| s.shadow);
         let plan = PassPlan::new(&self.outputs, SceneFacts { sun_shadow });
+        let document = self.sampler.document();
         let options = DrawOptions {
             raster: plan.needs_engine(),
             shading: plan.runs(Pass::Shade),
-            samples: self.document.labels.samples,
-            shadow_map_size: self.document.quality.shadow_map_size,
-            lod_error_px: self.document.quality.lod_error_px,
+            samples: document.labels.samples,
+            shadow_map_size: document.quality.shadow_map_size,
+            lod_error_px: document.quality.lod_error_px,
         };
         let (library, cast, engine) = (&self.library, &self.cast, &mut self.engine);
         self.threads.install(|| {
@@ -127,8 +128,7 @@ impl FrameMaker for Studio {
     /// Samples a frame, renders it and labels it.
     fn make(&mut self, frame: u32) -> Result<RenderedFrame, FrameError> {
         let mut times = StageTimes::default();
-        let scene =
-            times.measure("sample", || sampling::sample(&self.document, &self.catalogue, frame))?;
+        let scene = times.measure("sample", || self.sampler.scene(frame));
         let (drawn, rendered) = self.render_scene(&scene, &mut times)?;
         let annotations =
             times.measure("label", || label::annotate(&scene, &drawn, &rendered, &self.outputs));

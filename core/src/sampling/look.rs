@@ -63,9 +63,9 @@ const STRONG: [&str; 8] = [
 const STRONG_STD: f64 = 0.12;
 
 /// Face targets that are one shape: a single one, or those of the left and the right side.
-pub(super) type FaceShape<'a> = Vec<&'a str>;
+pub(super) type FaceShape = Vec<String>;
 
-pub(super) fn face_shapes(targets: &[String]) -> Vec<FaceShape<'_>> {
+pub(super) fn face_shapes(targets: &[String]) -> Vec<FaceShape> {
     let known: BTreeSet<&str> = targets.iter().map(String::as_str).collect();
     // `folder/l-name` and `folder/r-name`.
     let other_side = |name: &str, from: &str, to: &str| {
@@ -76,8 +76,8 @@ pub(super) fn face_shapes(targets: &[String]) -> Vec<FaceShape<'_>> {
     let mut shapes = Vec::new();
     for name in targets {
         if other_side(name, "r-", "l-").is_none() {
-            shapes
-                .push(std::iter::once(name.as_str()).chain(other_side(name, "l-", "r-")).collect());
+            let sides = std::iter::once(name.as_str()).chain(other_side(name, "l-", "r-"));
+            shapes.push(sides.map(str::to_owned).collect());
         }
     }
     shapes
@@ -181,7 +181,7 @@ fn face(look: &document::Look, shapes: &[FaceShape], source: Source) -> Vec<(Str
         let strong = shapes[shape].iter().any(|name| STRONG.iter().any(|s| name.contains(s)));
         let std = if strong { look.face_std.min(STRONG_STD) } else { look.face_std };
         let amount = (std * quantile::normal(u)).abs().min(look.face_max);
-        face.extend(shapes[shape].iter().map(|name| ((*name).to_owned(), amount)));
+        face.extend(shapes[shape].iter().map(|name| (name.clone(), amount)));
     }
     face.sort_by(|a, b| a.0.cmp(&b.0));
     face

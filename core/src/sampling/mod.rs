@@ -4,6 +4,8 @@
 //! section that is switched off moves no value of another. One file per section of the document.
 //! What the assets look like is not known here: a [`Catalogue`] holds their names.
 
+use std::sync::Arc;
+
 use crate::base::rng::Draws;
 use crate::document::{Choice, Document, Problem, file::Problems, validate};
 use crate::scene::Scene;
@@ -61,33 +63,53 @@ pub struct Counts {
     pub occluders: u32,
 }
 
-/// One frame of a document.
-///
-/// # Errors
-/// When the document makes no sense or names assets that the catalogue does not hold.
-pub fn sample(
-    document: &Document,
-    catalogue: &Catalogue,
-    frame: u32,
-) -> Result<Scene, SampleError> {
-    let problems = validate(document);
-    if !problems.is_empty() {
-        return Err(SampleError::Document(Problems(problems)));
+/// A document that was found valid, with the assets that it draws from.
+#[derive(Clone, Debug)]
+pub struct Sampler {
+    document: Arc<Document>,
+    catalogue: Catalogue,
+    faces: Vec<look::FaceShape>,
+}
+
+impl Sampler {
+    /// Checks a document once for all its frames.
+    ///
+    /// # Errors
+    /// When the document makes no sense or names assets that the catalogue does not hold.
+    pub fn new(document: Arc<Document>, catalogue: Catalogue) -> Result<Self, SampleError> {
+        let problems = validate(&document);
+        if !problems.is_empty() {
+            return Err(SampleError::Document(Problems(problems)));
+        }
+        let problems = check_assets(&document, &catalogue);
+        if !problems.is_empty() {
+            return Err(SampleError::Assets(Problems(problems)));
+        }
+        let faces = look::face_shapes(&catalogue.face_targets);
+        Ok(Self { document, catalogue, faces })
     }
-    let problems = check_assets(document, catalogue);
-    if !problems.is_empty() {
-        return Err(SampleError::Assets(Problems(problems)));
+
+    /// The document.
+    #[must_use]
+    pub fn document(&self) -> &Document {
+        &self.document
     }
-    let draws = Draws::new(document.seed, frame);
-    Ok(Scene {
-        frame,
-        seed: document.seed,
-        camera: camera::camera(document, draws),
-        lights: lights::lights(&document.lights, draws),
-        exposure_ev100: camera::exposure_ev100(&document.post, draws),
-        objects: background::objects(document, catalogue, draws),
-        people: people::people(&document.people, catalogue, draws),
-    })
+
+    /// One frame. It depends on the document and the catalogue alone.
+    #[must_use]
+    pub fn scene(&self, frame: u32) -> Scene {
+        let Self { document, catalogue, faces } = self;
+        let draws = Draws::new(document.seed, frame);
+        Scene {
+            frame,
+            seed: document.seed,
+            camera: camera::camera(document, draws),
+            lights: lights::lights(&document.lights, draws),
+            exposure_ev100: camera::exposure_ev100(&document.post, draws),
+            objects: background::objects(document, catalogue, draws),
+            people: people::people(&document.people, catalogue, faces, draws),
+        }
+    }
 }
 
 /// How many people and occluders a frame holds. The document must be valid.

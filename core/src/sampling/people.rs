@@ -3,6 +3,7 @@
 use glam::DVec3;
 
 use super::background::asset;
+use super::look::FaceShape;
 use super::place::{PEOPLE, places};
 use super::value::{flag, number, rotation};
 use super::{Catalogue, body, keys, look, outfit};
@@ -13,12 +14,12 @@ use crate::scene::{Body, Person, Placement, Pose, Sex};
 pub(super) fn people(
     people: &document::People,
     catalogue: &Catalogue,
+    faces: &[FaceShape],
     draws: Draws,
 ) -> Vec<Person> {
     if !people.enabled {
         return Vec::new();
     }
-    let faces = look::face_shapes(&catalogue.face_targets);
     let places = places(&people.placement, &PEOPLE, draws).points;
     let identities = people.identities.map(|count| Identities::new(count, draws));
     let person = |(slot, position_m)| {
@@ -38,7 +39,7 @@ pub(super) fn people(
                 rotation: rotation(&people.rotation_deg, DVec3::ZERO, turn),
                 scale: DVec3::splat(number(&people.scale, draws.of(keys::PERSON_SCALE, slot))),
             },
-            look: look::look(&people.look, &faces, traits, lasting),
+            look: look::look(&people.look, faces, traits, lasting),
             outfit: outfit::outfit(&people.wardrobe, &catalogue.cloth_patterns, lasting, here),
             pose: pose(&people.pose, &catalogue.clips, here),
             body,

@@ -143,7 +143,7 @@ pub(super) fn bound_border(chunk: &mut Chunk, target: &Target<'_>, sun: &SunAxes
         let mut polygon = Polygon::triangle(corners, target.vertices);
         picture.iter().for_each(|side| polygon.cut(side));
         for p in polygon.points() {
-            bounds.add(sun.coordinates(p.map(|v| v as f32)));
+            bounds.add(p.map(|v| v as f32), sun);
         }
     }
     chunk.border_bounds = bounds;

@@ -202,7 +202,8 @@ impl Buffers {
         }
         let view = times.measure("shadow fit", || {
             let [casters, receivers] = self.bounds(level, list, axes, [seen, casts]);
-            ShadowView::fit(axes, &casters, &receivers, size)
+            let focal_px = list.view.fx.max(list.view.fy);
+            ShadowView::fit(axes, &casters, &receivers, size, focal_px)
         });
         let Some(view) = view else { return Ok(None) };
         times.measure("shadow setup", || {
@@ -216,7 +217,7 @@ impl Buffers {
             Ok(())
         })?;
         times.measure("shadow raster", || {
-            self.shadow_map.raster(level, self.casting.as_slice(), size);
+            self.shadow_map.raster(level, self.casting.as_slice(), view.projection.size);
         });
         Ok(Some(view))
     }

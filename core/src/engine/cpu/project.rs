@@ -96,8 +96,8 @@ impl Projection {
     }
 
     /// A parallel projection whose rows give x, y and depth.
-    pub(super) fn parallel(x: [f64; 4], y: [f64; 4], depth: [f64; 4], size: u32) -> Self {
-        Self { rows: [x, y, [0.0, 0.0, 0.0, 1.0], depth], near_w: 0.5, size: [size; 2] }
+    pub(super) fn parallel(x: [f64; 4], y: [f64; 4], depth: [f64; 4], size: [u32; 2]) -> Self {
+        Self { rows: [x, y, [0.0, 0.0, 0.0, 1.0], depth], near_w: 0.5, size }
     }
 
     /// Projects one point, which must lie in the guard band and behind the near plane.

@@ -1,7 +1,8 @@
 //! Shadow: depth seen from the sun, and how much of its light reaches a point.
 //!
 //! A parallel projection is fitted to where the visible surfaces and the shadows that can fall on
-//! them meet; casters are drawn whatever their distance towards the sun. Single-sided triangles
+//! them meet, with texels no finer than half a pixel; casters are drawn whatever their distance
+//! towards the sun. Single-sided triangles
 //! cast where their front faces the sun. Look-ups filter four texels bilinearly (percentage-closer
 //! filtering, Reeves et al. 1987) and are moved off the surface along its normal (Holbert, "Saying
 //! goodbye to shadow acne", GDC 2011).
@@ -52,11 +53,13 @@ impl SunAxes {
     }
 }
 
-/// A box along the sun's axes, metres.
+/// A box along the sun's axes, metres, and how near to the camera anything in it comes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Bounds {
     min: [f32; 3],
     max: [f32; 3],
+    /// Along the camera's axis.
+    nearest_m: f32,
 }
 
 impl Default for Bounds {
@@ -67,10 +70,13 @@ impl Default for Bounds {
 
 impl Bounds {
     /// Holds nothing.
-    pub(super) const EMPTY: Self = Self { min: [f32::MAX; 3], max: [f32::MIN; 3] };
+    pub(super) const EMPTY: Self =
+        Self { min: [f32::MAX; 3], max: [f32::MIN; 3], nearest_m: f32::MAX };
 
-    /// Grows to hold a point.
-    pub(super) fn add(&mut self, p: [f32; 3]) {
+    /// Grows to hold a point of view space.
+    pub(super) fn add(&mut self, point: [f32; 3], axes: &SunAxes) {
+        let p = axes.coordinates(point);
+        self.nearest_m = self.nearest_m.min(-point[2]);
         for axis in 0..3 {
             self.min[axis] = self.min[axis].min(p[axis]);
             self.max[axis] = self.max[axis].max(p[axis]);
@@ -82,6 +88,7 @@ impl Bounds {
         Self {
             min: std::array::from_fn(|i| self.min[i].min(other.min[i])),
             max: std::array::from_fn(|i| self.max[i].max(other.max[i])),
+            nearest_m: self.nearest_m.min(other.nearest_m),
         }
     }
 }
@@ -106,13 +113,17 @@ fn bound_body<const AVX2: bool>(
     let [width, height] = size.map(|s| (s as i32) << SCREEN_BITS);
     let (low, high) = (F32x8::<AVX2>::splat(f32::MAX), F32x8::<AVX2>::splat(f32::MIN));
     let (mut all, mut seen) = ([[low, high]; 3], [[low, high]; 3]);
+    let (mut nearest_all, mut nearest_seen) = (low, low);
     for (vertices, screen) in vertices.chunks_exact(LANES).zip(screen.chunks_exact(LANES)) {
         let (mut x, mut y) = ([0; LANES], [0; LANES]);
         for lane in 0..LANES {
             (x[lane], y[lane]) = (screen[lane].x, screen[lane].y);
         }
         let visible = within::<AVX2>(I32x8(x), width) & within(I32x8(y), height);
-        let p = axes.coordinates8(positions8(vertices));
+        let position = positions8(vertices);
+        nearest_all = nearest_all.min(-position.z);
+        nearest_seen = nearest_seen.min(visible.select(-position.z, low));
+        let p = axes.coordinates8(position);
         for axis in 0..3 {
             all[axis][0] = all[axis][0].min(p[axis]);
             all[axis][1] = all[axis][1].max(p[axis]);
@@ -120,7 +131,7 @@ fn bound_body<const AVX2: bool>(
             seen[axis][1] = seen[axis][1].max(visible.select(p[axis], high));
         }
     }
-    (narrowed(&all), narrowed(&seen))
+    (narrowed(&all, nearest_all), narrowed(&seen, nearest_seen))
 }
 
 /// Whether whole numbers lie in `0..=end`.
@@ -131,10 +142,11 @@ fn within<const AVX2: bool>(v: I32x8<AVX2>, end: i32) -> Mask8<AVX2> {
 
 /// Eight boxes to one.
 #[inline(always)]
-fn narrowed<const AVX2: bool>(b: &[[F32x8<AVX2>; 2]; 3]) -> Bounds {
+fn narrowed<const AVX2: bool>(b: &[[F32x8<AVX2>; 2]; 3], nearest: F32x8<AVX2>) -> Bounds {
     Bounds {
         min: [b[0][0].smallest(), b[1][0].smallest(), b[2][0].smallest()],
         max: [b[0][1].largest(), b[1][1].largest(), b[2][1].largest()],
+        nearest_m: nearest.smallest(),
     }
 }
 
@@ -152,22 +164,29 @@ pub(super) struct ShadowView {
 }
 
 impl ShadowView {
-    /// Fits the map; nothing if no shadow can be seen.
+    /// Fits a map of at most `largest` texels a side; nothing if no shadow can be seen. Texels are
+    /// no finer than half a pixel at the nearest receiver, as nobody would see it.
     pub(super) fn fit(
         axes: &SunAxes,
         casters: &Bounds,
         receivers: &Bounds,
-        size: u32,
+        largest: u32,
+        focal_px: f32,
     ) -> Option<Self> {
         let mut low = [0.0; 2];
         let mut scale = [0.0; 2];
+        let mut size = [0; 2];
+        let half_px_m = 0.5 * f64::from(receivers.nearest_m / focal_px);
         for axis in 0..2 {
             low[axis] = f64::from(casters.min[axis].max(receivers.min[axis]));
             let high = f64::from(casters.max[axis].min(receivers.max[axis]));
             if high < low[axis] {
                 return None;
             }
-            scale[axis] = (f64::from(size) - 2.0 * MARGIN) / (high - low[axis]).max(1e-3);
+            let extent_m = (high - low[axis]).max(1e-3);
+            let texels = (extent_m / half_px_m + 2.0 * MARGIN).min(f64::from(largest));
+            size[axis] = (texels.ceil() as u32).next_multiple_of(TILE as u32).min(largest);
+            scale[axis] = (f64::from(size[axis]) - 2.0 * MARGIN) / extent_m;
         }
         let both = casters.join(receivers);
         let [far, near] = [both.min[2], both.max[2]].map(f64::from);
@@ -179,7 +198,7 @@ impl ShadowView {
         };
         // Rows run down, against the second axis, so that front faces turn as in a picture.
         let x = row(0, scale[0], MARGIN - low[0] * scale[0]);
-        let y = row(1, -scale[1], f64::from(size) - MARGIN + low[1] * scale[1]);
+        let y = row(1, -scale[1], f64::from(size[1]) - MARGIN + low[1] * scale[1]);
         let depth = row(2, depth_scale, 0.001 - far * depth_scale);
         Some(Self {
             projection: Projection::parallel(x, y, depth, size),
@@ -193,25 +212,26 @@ impl ShadowView {
 /// The map: tiles of 64x64 texels, within them blocks of 4x4.
 #[derive(Default)]
 pub(super) struct ShadowMap {
+    /// Room for the largest map so far.
     texels: Vec<f32>,
     /// Which tiles hold anything but zeros.
     dirty: Vec<bool>,
-    size: usize,
+    /// Columns and rows of texels.
+    size: [usize; 2],
 }
 
 impl ShadowMap {
     /// Rasters the casters; tiles that none touches are only cleared if they need it.
-    pub(super) fn raster(&mut self, level: Level, chunks: &[Chunk], size: u32) {
-        let size = size as usize;
-        if self.size != size {
-            self.size = size;
-            self.texels.clear();
-            self.texels.resize(size * size, 0.0);
-            self.dirty.clear();
-            self.dirty.resize((size / TILE) * (size / TILE), false);
+    pub(super) fn raster(&mut self, level: Level, chunks: &[Chunk], size: [u32; 2]) {
+        self.size = size.map(|side| side as usize);
+        let [columns, rows] = self.size.map(|side| side / TILE);
+        let count = columns * rows;
+        if self.dirty.len() < count {
+            self.dirty.resize(count, false);
+            self.texels.resize(count * TILE_TEXELS, 0.0);
         }
-        let columns = size / TILE;
-        let tiles = self.texels.par_chunks_mut(TILE_TEXELS).zip(self.dirty.par_iter_mut());
+        let texels = self.texels[..count * TILE_TEXELS].par_chunks_mut(TILE_TEXELS);
+        let tiles = texels.zip(self.dirty[..count].par_iter_mut());
         tiles.enumerate().with_min_len(8).for_each(|(index, (texels, dirty))| {
             let tile = [(index % columns) as u32, (index / columns) as u32];
             let touched = chunks.iter().any(|chunk| !chunk.bins.of(tile).is_empty());
@@ -261,8 +281,8 @@ impl SunShadow<'_> {
         let half = F32x8::splat(0.5);
         let (x, y) = (affine8(&view.rows[0], q) - half, affine8(&view.rows[1], q) - half);
         let depth = affine8(&view.rows[2], q) + F32x8::splat(0.5 * view.texel_m * view.depth_per_m);
-        let last = F32x8::splat(self.map.size as f32 - 1.0);
-        let inside = x.ge(F32x8::ZERO) & last.gt(x) & y.ge(F32x8::ZERO) & last.gt(y);
+        let [last_x, last_y] = self.map.size.map(|side| F32x8::splat(side as f32 - 1.0));
+        let inside = x.ge(F32x8::ZERO) & last_x.gt(x) & y.ge(F32x8::ZERO) & last_y.gt(y);
         if !inside.any() {
             return F32x8::ONE;
         }
@@ -285,7 +305,7 @@ impl SunShadow<'_> {
         let (left, top) = (left.round_i32(), top.round_i32());
         let one = I32x8::splat(1);
         let columns = [column_offset(left), column_offset(left + one)];
-        let tiles_per_row = (self.map.size / TILE) as i32;
+        let tiles_per_row = (self.map.size[0] / TILE) as i32;
         let rows = [row_offset(top, tiles_per_row), row_offset(top + one, tiles_per_row)];
         let upper = self
             .compare(rows[0] + columns[0], depth)
