@@ -1,9 +1,9 @@
-//! Bin: which triangles of a chunk touch which tile, as one list per tile.
+//! Bin: which triangles of a chunk touch which tile, and which chunks do, as one list per tile.
 //!
 //! The table spans only the tiles that the chunk touches, so that many small chunks cost little
 //! also in a large picture.
 
-use super::chunk::Triangle;
+use super::chunk::{Chunk, Triangle};
 
 /// Triangle indices by tile.
 #[derive(Default)]
@@ -49,6 +49,22 @@ impl Bins {
         }
     }
 
+    /// Calls a function with column and row of each tile that a triangle touches.
+    fn each_filled(&self, mut f: impl FnMut([u32; 2])) {
+        let [left, right, top, bottom] = self.rect;
+        if self.list.is_empty() {
+            return;
+        }
+        let mut ends = self.starts.windows(2);
+        for y in top..bottom + 1 {
+            for x in left..right + 1 {
+                if ends.next().is_some_and(|pair| pair[0] < pair[1]) {
+                    f([x, y]);
+                }
+            }
+        }
+    }
+
     /// The triangles that touch a tile, in draw order.
     #[inline]
     pub(super) fn of(&self, [x, y]: [u32; 2]) -> &[u32] {
@@ -57,6 +73,47 @@ impl Bins {
             return &[];
         }
         let tile = ((y - top) * (right - left + 1) + (x - left)) as usize;
+        &self.list[self.starts[tile] as usize..self.starts[tile + 1] as usize]
+    }
+}
+
+/// Chunk indices by tile, so that a tile need not ask all chunks.
+#[derive(Default)]
+pub(super) struct ChunksByTile {
+    columns: u32,
+    /// As in [`Bins`], for all tiles of the picture.
+    starts: Vec<u32>,
+    /// Chunk indices, tile after tile, in draw order within each.
+    list: Vec<u32>,
+}
+
+impl ChunksByTile {
+    /// Sorts the chunks of a picture of so many columns and rows of tiles.
+    pub(super) fn fill(&mut self, chunks: &[Chunk], [columns, rows]: [u32; 2]) {
+        self.columns = columns;
+        self.starts.clear();
+        self.starts.resize((columns * rows) as usize + 2, 0);
+        for chunk in chunks {
+            chunk.bins.each_filled(|[x, y]| self.starts[(y * columns + x) as usize + 2] += 1);
+        }
+        for i in 2..self.starts.len() {
+            self.starts[i] += self.starts[i - 1];
+        }
+        self.list.clear();
+        self.list.resize(self.starts.last().map_or(0, |end| *end as usize), 0);
+        for (index, chunk) in chunks.iter().enumerate() {
+            chunk.bins.each_filled(|[x, y]| {
+                let at = &mut self.starts[(y * columns + x) as usize + 1];
+                self.list[*at as usize] = index as u32;
+                *at += 1;
+            });
+        }
+    }
+
+    /// The chunks with triangles that touch a tile, in draw order.
+    #[inline]
+    pub(super) fn of(&self, [x, y]: [u32; 2]) -> &[u32] {
+        let tile = (y * self.columns + x) as usize;
         &self.list[self.starts[tile] as usize..self.starts[tile + 1] as usize]
     }
 }

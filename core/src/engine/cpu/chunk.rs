@@ -5,7 +5,7 @@
 
 use std::ops::Range;
 
-use super::bin::Bins;
+use super::bin::{Bins, ChunksByTile};
 use super::shadow::Bounds;
 use super::skin::Placed;
 use crate::draw::DrawList;
@@ -111,6 +111,7 @@ pub(super) struct Chunk {
 pub(super) struct ChunkList {
     chunks: Vec<Chunk>,
     used: usize,
+    by_tile: ChunksByTile,
 }
 
 impl ChunkList {
@@ -154,6 +155,17 @@ impl ChunkList {
             chunk.smooth = object.smooth;
             start = end;
         }
+    }
+
+    /// Sorts the chunks, once set up, by the tiles of a picture, `1 << tile_log2` pixels wide.
+    pub(super) fn sort_by_tile(&mut self, size: [u32; 2], tile_log2: u32) {
+        let tiles = size.map(|side| side.div_ceil(1 << tile_log2));
+        self.by_tile.fill(&self.chunks[..self.used], tiles);
+    }
+
+    /// Which chunks touch which tile.
+    pub(super) const fn by_tile(&self) -> &ChunksByTile {
+        &self.by_tile
     }
 
     pub(super) fn as_slice(&self) -> &[Chunk] {

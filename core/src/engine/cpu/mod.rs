@@ -177,6 +177,7 @@ impl Buffers {
                 ..Target::picture::<S>(&placed.vertices, &placed.screen, &projection)
             };
             set_up_all(chunks, list, &target);
+            self.visible.sort_by_tile(projection.size, target.tile_log2);
             Ok(())
         })?;
         let shadow = match &axes {
@@ -214,10 +215,11 @@ impl Buffers {
             self.casting.fill(list, &self.placed, casts)?;
             let target = Target::shadow(vertices, &self.sun_screen, &view.projection);
             set_up_all(self.casting.as_mut_slice(), list, &target);
+            self.casting.sort_by_tile(view.projection.size, target.tile_log2);
             Ok(())
         })?;
         times.measure("shadow raster", || {
-            self.shadow_map.raster(level, self.casting.as_slice(), view.projection.size);
+            self.shadow_map.raster(level, &self.casting, view.projection.size);
         });
         Ok(Some(view))
     }
@@ -274,6 +276,7 @@ impl Buffers {
             list,
             placed: &self.placed,
             chunks: self.visible.as_slice(),
+            by_tile: self.visible.by_tile(),
             shading: shades.then(|| shading(list, self.visible.as_slice(), &self.placed, shadow)),
             resolves,
             reduces,

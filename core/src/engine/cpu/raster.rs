@@ -17,10 +17,11 @@ const HALVES: usize = BLOCK / LANES;
 const LARGE_BOUND: i64 = 1 << 30;
 
 kernel! {
-    /// Rasters the chunks' triangles that touch a tile of `SIDE` pixels into its samples, which
-    /// are overwritten; without `IDS` only depth.
+    /// Rasters the triangles that touch a tile of `SIDE` pixels into its samples, which are
+    /// overwritten; without `IDS` only depth. `touching` names the chunks that hold any.
     fn raster_tile[const S: usize, const IDS: bool, const SIDE: usize](
         chunks: &[Chunk],
+        touching: &[u32],
         tile: [u32; 2],
         depth: &mut [f32],
         ids: &mut [u32],
@@ -31,6 +32,7 @@ kernel! {
 #[inline(always)]
 fn raster_body<const AVX2: bool, const S: usize, const IDS: bool, const SIDE: usize>(
     chunks: &[Chunk],
+    touching: &[u32],
     tile: [u32; 2],
     depth: &mut [f32],
     ids: &mut [u32],
@@ -49,10 +51,11 @@ fn raster_body<const AVX2: bool, const S: usize, const IDS: bool, const SIDE: us
     };
     let depth = depth.as_chunks_mut().0;
     let origin_px = [(tile[0] as usize * SIDE) as i32, (tile[1] as usize * SIDE) as i32];
-    for (index, chunk) in chunks.iter().enumerate() {
+    for &index in touching {
+        let chunk = &chunks[index as usize];
         for &t in chunk.bins.of(tile) {
             let triangle = &chunk.triangles[t as usize];
-            let id = first_id(index) + t;
+            let id = first_id(index as usize) + t;
             if triangle.large {
                 raster_triangle::<AVX2, S, IDS, SIDE, true>(
                     triangle, id, origin_px, depth, ids, farthest,

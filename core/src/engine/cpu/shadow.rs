@@ -9,7 +9,7 @@
 
 use rayon::prelude::*;
 
-use super::chunk::Chunk;
+use super::chunk::ChunkList;
 use super::project::{Projection, SCREEN_BITS, ScreenVertex, Vertex, positions8};
 use super::raster;
 use super::samples::BLOCK;
@@ -222,7 +222,8 @@ pub(super) struct ShadowMap {
 
 impl ShadowMap {
     /// Rasters the casters; tiles that none touches are only cleared if they need it.
-    pub(super) fn raster(&mut self, level: Level, chunks: &[Chunk], size: [u32; 2]) {
+    pub(super) fn raster(&mut self, level: Level, casting: &ChunkList, size: [u32; 2]) {
+        let (chunks, by_tile) = (casting.as_slice(), casting.by_tile());
         self.size = size.map(|side| side as usize);
         let [columns, rows] = self.size.map(|side| side / TILE);
         let count = columns * rows;
@@ -234,12 +235,13 @@ impl ShadowMap {
         let tiles = texels.zip(self.dirty[..count].par_iter_mut());
         tiles.enumerate().with_min_len(8).for_each(|(index, (texels, dirty))| {
             let tile = [(index % columns) as u32, (index / columns) as u32];
-            let touched = chunks.iter().any(|chunk| !chunk.bins.of(tile).is_empty());
-            if touched {
+            let touching = by_tile.of(tile);
+            if !touching.is_empty() {
                 let mut farthest = [0.0; TILE_TEXELS / BLOCK];
                 raster::raster_tile::<1, false, TILE>(
                     level,
                     chunks,
+                    touching,
                     tile,
                     texels,
                     &mut [],
@@ -248,7 +250,7 @@ impl ShadowMap {
             } else if *dirty {
                 texels.fill(0.0);
             }
-            *dirty = touched;
+            *dirty = !touching.is_empty();
         });
     }
 }

@@ -5,6 +5,7 @@
 
 use std::time::{Duration, Instant};
 
+use super::bin::ChunksByTile;
 use super::chunk::{Chunk, NOTHING};
 use super::fragment::{Fragments, Visible};
 use super::raster::raster_tile;
@@ -102,6 +103,7 @@ pub(super) struct TilePass<'a> {
     pub(super) list: &'a DrawList,
     pub(super) placed: &'a skin::Placed,
     pub(super) chunks: &'a [Chunk],
+    pub(super) by_tile: &'a ChunksByTile,
     /// Present when the picture is wanted.
     pub(super) shading: Option<Shading<'a>>,
     pub(super) resolves: bool,
@@ -140,6 +142,7 @@ impl TilePass<'_> {
             raster_tile::<S, true, TILE>(
                 self.level,
                 self.chunks,
+                self.by_tile.of(tile),
                 tile,
                 &mut s.depth,
                 &mut s.ids,
