@@ -41,6 +41,11 @@ fn invalid(
     Err(EngineError::Invalid { what, index: index as u64, got, expected })
 }
 
+/// Lane by lane the larger.
+fn largest<T: Ord + Copy, const N: usize>(a: [T; N], b: [T; N]) -> [T; N] {
+    std::array::from_fn(|i| a[i].max(b[i]))
+}
+
 /// Whether a reference into a list of known length holds.
 fn within(what: &'static str, index: usize, got: u64, len: usize) -> Result<(), EngineError> {
     if got < len as u64 { Ok(()) } else { invalid(what, index, got, "an index that exists") }
@@ -130,7 +135,9 @@ fn check_objects(list: &DrawList) -> Result<(), EngineError> {
         for m in palette {
             finite(id, "a joint's view_from_model", m.as_flattened())?;
         }
-        let joint = mesh.skin.iter().flat_map(|s| s.joints).max().unwrap_or(0);
+        // Folds of plain values: the compiler turns them into vector instructions.
+        let joints = mesh.skin.iter().fold([0; 4], |most, s| largest(most, s.joints));
+        let joint = joints.into_iter().max().unwrap_or(0);
         within("joint in the mesh of object", index, joint.into(), palette.len())?;
     }
     Ok(())
@@ -149,8 +156,12 @@ fn check_draw(list: &DrawList, index: usize, draw: &Draw) -> Result<(), EngineEr
             "a range of its mesh's triangles",
         );
     };
-    let Some(highest) = triangles.as_flattened().iter().max() else { return Ok(()) };
-    within("vertex in the mesh of draw", index, (*highest).into(), mesh.positions.len())
+    if triangles.is_empty() {
+        return Ok(());
+    }
+    let highest = triangles.iter().fold([0; 3], |most, t| largest(most, *t));
+    let highest = highest.into_iter().max().unwrap_or(0);
+    within("vertex in the mesh of draw", index, highest.into(), mesh.positions.len())
 }
 
 fn check_material(list: &DrawList, index: usize, m: &Material) -> Result<(), EngineError> {

@@ -1,0 +1,62 @@
+//! What a person costs who was never seen before: `cargo bench -p figurant-tests --bench people`.
+//!
+//! Means over the people of some frames of a preset, one thread: the body at rest, and the dressed
+//! mesh at each level of detail with its size and error. Who comes again costs a look-up.
+//! Arguments: a preset and how many frames.
+
+use std::sync::Arc;
+use std::time::Instant;
+
+use figurant_core::document::{file, presets};
+use figurant_core::geometry::body::rest_body;
+use figurant_core::geometry::person::dress;
+use figurant_core::library::Library;
+use figurant_core::library::figure::LOD_COUNT;
+use figurant_core::library::textures::TextureGroup;
+use figurant_core::sampling::{Catalogue, Sampler};
+
+fn main() {
+    let words: Vec<String> = std::env::args().skip(1).filter(|a| !a.starts_with('-')).collect();
+    let name = words.first().map_or("peoplesanspeople", String::as_str);
+    let frames: u32 = words.get(1).and_then(|n| n.parse().ok()).unwrap_or(20);
+    let Some(preset) = presets::find(name) else {
+        eprintln!("no preset '{name}'");
+        return;
+    };
+    let mut document = file::parse(preset.text).expect("presets are valid");
+    document.people.identities = None;
+    let library = Library::new(&[], 1024).expect("built-in assets load");
+    let catalogue = Catalogue {
+        face_targets: library.figure.face_shape_names().map(str::to_owned).collect(),
+        clips: library.clips.ids().map(str::to_owned).collect(),
+        textures: library.surface_textures(),
+        cloth_patterns: library.textures.ids(TextureGroup::Cloth).to_vec(),
+    };
+    let sampler = Sampler::new(Arc::new(document), catalogue).expect("presets are valid");
+    let people: Vec<_> = (0..frames).flat_map(|frame| sampler.scene(frame).people).collect();
+    let count = people.len() as f64;
+    println!("{} people of {name}", people.len());
+
+    let start = Instant::now();
+    let body = |p: &figurant_core::scene::Person| {
+        rest_body(&library.figure, &p.body, &p.look.face).expect("sampled targets exist")
+    };
+    let bodies: Vec<_> = people.iter().map(body).collect();
+    println!("body at rest      {:7.3} ms", start.elapsed().as_secs_f64() * 1e3 / count);
+    for lod in 0..LOD_COUNT {
+        let (start, mut size) = (Instant::now(), [0; 3]);
+        for (person, body) in people.iter().zip(&bodies) {
+            let mesh = dress(&library.figure, person, body, lod).mesh;
+            let parts = [mesh.positions.len(), mesh.triangles.len(), mesh.size_bytes()];
+            size = [0, 1, 2].map(|i| size[i] + parts[i]);
+        }
+        let ms = start.elapsed().as_secs_f64() * 1e3 / count;
+        let [vertices, triangles, bytes] = size.map(|sum| sum as f64 / count);
+        let error_mm = library.figure.lod_error_m(lod) * 1e3;
+        println!(
+            "level {lod}, {error_mm:4.1} mm  {ms:7.3} ms {vertices:8.0} vertices {triangles:8.0} \
+             triangles {:6.0} KiB",
+            bytes / 1024.0
+        );
+    }
+}
