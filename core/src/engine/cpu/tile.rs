@@ -205,16 +205,14 @@ impl TilePass<'_> {
             if let Some((low, high)) = self.tile_box(origin_px, &s.depth) {
                 shading.stage.lighting.reaching(low, high, &mut s.reaching);
             }
-            for bucket in &s.fragments.buckets {
+            for bucket in s.fragments.buckets() {
                 let draw = &self.list.draws[bucket.draw as usize];
                 let drawn = DrawnSurface {
                     surface: &shading.surfaces[draw.material as usize],
                     double_sided: draw.double_sided,
                     mirrored: self.placed.mirrored[draw.object as usize],
                 };
-                let end = bucket.start + bucket.len.next_multiple_of(LANES);
-                let fragments = &s.fragments.ordered[bucket.start..end];
-                shade(self.level, &shading.stage, drawn, &s.reaching, fragments, &mut s.color);
+                shade(self.level, &shading.stage, drawn, &s.reaching, bucket, &mut s.color);
             }
         });
     }
