@@ -44,14 +44,18 @@ kernel! {
 
 #[inline(always)]
 fn encode_body<const AVX2: bool>(color: &TileColor, bytes: &mut [[u8; 3]; TILE * TILE]) {
-    for (from, bytes) in bytes.chunks_exact_mut(LANES).enumerate() {
+    for (from, bytes) in bytes.as_chunks_mut::<LANES>().0.iter_mut().enumerate() {
         let from = from * LANES;
         let red = byte::<AVX2>(F32x8::load(&color[0][from..from + LANES]));
         let green = byte::<AVX2>(F32x8::load(&color[1][from..from + LANES]));
         let blue = byte::<AVX2>(F32x8::load(&color[2][from..from + LANES]));
-        for (lane, bytes) in bytes.iter_mut().enumerate() {
-            *bytes = [red.0[lane] as u8, green.0[lane] as u8, blue.0[lane] as u8];
+        let pixels = red | (green << 8) | (blue << 16);
+        // Four bytes at a time; the fourth is overwritten by the next pixel's first.
+        let bytes = bytes.as_flattened_mut();
+        for (lane, pixel) in pixels.0[..LANES - 1].iter().enumerate() {
+            bytes[lane * 3..lane * 3 + 4].copy_from_slice(&pixel.to_le_bytes());
         }
+        bytes[(LANES - 1) * 3..].copy_from_slice(&pixels.0[LANES - 1].to_le_bytes()[..3]);
     }
 }
 

@@ -1,12 +1,10 @@
 //! Fragments: what of a tile is shaded, how often, and with which weight.
 //!
 //! The samples of a pixel that show the same smooth stretch of one draw share a fragment, all
-//! others get one for each triangle; its weight is its share of the samples. Fragments are ordered
+//! others get one for each triangle; its weight is its share of the samples. Fragments are listed
 //! by draw, so that eight at a time share material and textures.
 
-use std::ops::Range;
-
-use super::chunk::{Chunk, Face, NOTHING, split_id};
+use super::chunk::{Chunk, Face, NOTHING, same_chunk, split_id};
 use super::samples::{BLOCK, Layout, TILE};
 use super::simd::LANES;
 
@@ -16,42 +14,55 @@ const CREASE: i32 = (0.8 * 127.0 * 127.0) as i32;
 /// Steps in depth larger than this many pixel widths separate surfaces.
 const STEP_PX: f32 = 8.0;
 
-/// The fragments of one draw.
-#[derive(Clone, Debug)]
+/// The fragments of one draw, one list for each of their properties.
+#[derive(Clone, Debug, Default)]
 pub(super) struct Bucket {
     /// Index in the draw list.
     pub(super) draw: u32,
-    /// First of its fragments in the ordered arrays, a multiple of eight.
-    pub(super) start: usize,
-    /// How many there are; up to the next multiple of eight the last is repeated, with weight 0.
-    pub(super) len: usize,
+    /// Id of the triangle.
+    pub(super) id: Vec<u32>,
+    /// Where to shade it: mean position of its samples, pixels of the picture.
+    pub(super) x: Vec<f32>,
+    /// See `x`.
+    pub(super) y: Vec<f32>,
+    /// Share of the pixel's samples.
+    pub(super) weight: Vec<f32>,
+    /// Pixel slot in the tile.
+    pub(super) slot: Vec<u16>,
 }
 
-/// One thing to shade.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Fragment {
-    /// Id of the triangle.
-    pub(super) id: u32,
-    /// Where to shade it: mean position of its samples, pixels of the picture.
-    pub(super) x: f32,
-    /// See `x`.
-    pub(super) y: f32,
-    /// Share of the pixel's samples.
-    pub(super) weight: f32,
-    /// Pixel slot in the tile.
-    pub(super) slot: u16,
-    bucket: u16,
+impl Bucket {
+    fn restart(&mut self, draw: u32) {
+        self.draw = draw;
+        self.id.clear();
+        self.x.clear();
+        self.y.clear();
+        self.weight.clear();
+        self.slot.clear();
+    }
+
+    /// Repeats the last fragment, without weight, up to a multiple of eight.
+    fn pad(&mut self) {
+        let len = self.id.len().next_multiple_of(LANES);
+        let last = self.id.len() - 1;
+        self.id.resize(len, self.id[last]);
+        self.x.resize(len, self.x[last]);
+        self.y.resize(len, self.y[last]);
+        self.weight.resize(len, 0.0);
+        self.slot.resize(len, self.slot[last]);
+    }
 }
 
 /// The fragments of a tile.
 #[derive(Default)]
 pub(super) struct Fragments {
-    found: Vec<Fragment>,
-    /// Ordered by draw.
-    pub(super) ordered: Vec<Fragment>,
-    pub(super) buckets: Vec<Bucket>,
+    /// Those in use come first; the others keep their memory for later tiles.
+    buckets: Vec<Bucket>,
+    used: usize,
     /// Bucket of each draw, or none.
     bucket_of_draw: Vec<u16>,
+    /// An id of the chunk that was seen last, and its bucket.
+    latest: (u32, usize),
     /// Share of each pixel slot that shows nothing.
     pub(super) background: Vec<f32>,
 }
@@ -96,70 +107,96 @@ impl Visible<'_> {
 }
 
 impl Fragments {
+    /// What was found, draw by draw: a multiple of eight fragments each, of which the last may be
+    /// repeated without weight.
+    pub(super) fn buckets(&self) -> &[Bucket] {
+        &self.buckets[..self.used]
+    }
+
     /// Finds the fragments of a tile.
     pub(super) fn gather<const S: usize>(&mut self, draws: usize, tile: &Visible<'_>) {
-        self.found.clear();
-        self.buckets.clear();
+        self.used = 0;
+        self.latest = (NOTHING, 0);
         self.background.resize(TILE * TILE, 0.0);
         if self.bucket_of_draw.len() != draws {
             self.bucket_of_draw.clear();
             self.bucket_of_draw.resize(draws, NO_BUCKET);
         }
         for (block, ids) in tile.ids.as_chunks::<BLOCK>().0.iter().enumerate() {
-            let slots = block * BLOCK / S..(block + 1) * BLOCK / S;
+            let first = block * BLOCK / S;
             if equal(ids) {
-                self.whole_pixels::<S>(tile, slots, ids[0]);
+                match S {
+                    1 => self.whole_pixels::<S, 16>(tile, first, ids[0]),
+                    4 => self.whole_pixels::<S, 4>(tile, first, ids[0]),
+                    _ => self.whole_pixels::<S, 1>(tile, first, ids[0]),
+                }
                 continue;
             }
-            for slot in slots {
+            for slot in first..first + BLOCK / S {
                 let ids = &tile.ids[slot * S..(slot + 1) * S];
                 if equal(ids) {
-                    self.whole_pixels::<S>(tile, slot..slot + 1, ids[0]);
+                    self.whole_pixels::<S, 1>(tile, slot, ids[0]);
                 } else {
                     self.background[slot] = self.group::<S>(tile, slot);
                 }
             }
         }
-        self.order();
-        for bucket in &self.buckets {
+        for bucket in &mut self.buckets[..self.used] {
+            bucket.pad();
             self.bucket_of_draw[bucket.draw as usize] = NO_BUCKET;
         }
     }
 
-    /// Adds pixels that one triangle, or nothing, covers.
+    /// Adds `N` pixels that one triangle, or nothing, covers.
     #[inline(always)]
-    fn whole_pixels<const S: usize>(&mut self, tile: &Visible<'_>, slots: Range<usize>, id: u32) {
+    fn whole_pixels<const S: usize, const N: usize>(
+        &mut self,
+        tile: &Visible<'_>,
+        first: usize,
+        id: u32,
+    ) {
+        let background = &mut self.background[first..first + N];
         if id == NOTHING {
-            self.background[slots].fill(1.0);
+            background.fill(1.0);
             return;
         }
-        let bucket = self.bucket(tile.chunks[split_id(id).0].draw);
-        self.buckets[usize::from(bucket)].len += slots.len();
-        self.background[slots.clone()].fill(0.0);
-        for slot in slots {
-            let [x, y] = Self::center::<S>(tile, slot, [8.0, 8.0]);
-            self.found.push(Fragment { id, x, y, weight: 1.0, slot: slot as u16, bucket });
+        background.fill(0.0);
+        let (mut x, mut y, mut slots) = ([0.0; N], [0.0; N], [0; N]);
+        let places = &Layout::<S>::SLOT_XY[first..first + N];
+        for i in 0..N {
+            x[i] = (tile.origin_px[0] + u32::from(places[i][0])) as f32 + 0.5;
+            y[i] = (tile.origin_px[1] + u32::from(places[i][1])) as f32 + 0.5;
+            slots[i] = (first + i) as u16;
         }
+        let bucket = self.bucket(tile, id);
+        bucket.id.extend_from_slice(&[id; N]);
+        bucket.x.extend_from_slice(&x);
+        bucket.y.extend_from_slice(&y);
+        bucket.weight.extend_from_slice(&[1.0; N]);
+        bucket.slot.extend_from_slice(&slots);
     }
 
-    /// The bucket of a draw.
+    /// The bucket of an id's draw.
     #[inline(always)]
-    fn bucket(&mut self, draw: u32) -> u16 {
+    fn bucket(&mut self, tile: &Visible<'_>, id: u32) -> &mut Bucket {
+        if !same_chunk(id, self.latest.0) {
+            self.latest = (id, self.bucket_of(tile.chunks[split_id(id).0].draw));
+        }
+        &mut self.buckets[self.latest.1]
+    }
+
+    /// Place of a draw's bucket.
+    fn bucket_of(&mut self, draw: u32) -> usize {
         let known = &mut self.bucket_of_draw[draw as usize];
         if *known == NO_BUCKET {
-            *known = self.buckets.len() as u16;
-            self.buckets.push(Bucket { draw, start: 0, len: 0 });
+            *known = self.used as u16;
+            if self.used == self.buckets.len() {
+                self.buckets.push(Bucket::default());
+            }
+            self.buckets[self.used].restart(draw);
+            self.used += 1;
         }
-        *known
-    }
-
-    /// Picture position of a point of a pixel, given in 1/16 pixel.
-    #[inline(always)]
-    fn center<const S: usize>(tile: &Visible<'_>, slot: usize, at_16th: [f32; 2]) -> [f32; 2] {
-        let xy = Layout::<S>::SLOT_XY[slot];
-        std::array::from_fn(|i| {
-            (tile.origin_px[i] + u32::from(xy[i])) as f32 + at_16th[i] * (1.0 / 16.0)
-        })
+        usize::from(*known)
     }
 
     /// Divides the samples of a pixel that shows several triangles; returns the share of the
@@ -186,7 +223,8 @@ impl Fragments {
                 let together = free
                     && (other == id
                         || (chunk.smooth
-                            && tile.chunks[split_id(other).0].draw == chunk.draw
+                            && (same_chunk(other, id)
+                                || tile.chunks[split_id(other).0].draw == chunk.draw)
                             && tile.connected(first + i, first + j)));
                 if together {
                     rest &= !(1 << j);
@@ -195,34 +233,19 @@ impl Fragments {
                     sum = [sum[0] + p[0], sum[1] + p[1]];
                 }
             }
-            let mean = sum.map(|s| s as f32 / count as f32);
-            let [x, y] = Self::center::<S>(tile, slot, mean);
-            let weight = count as f32 / S as f32;
-            let bucket = self.bucket(chunk.draw);
-            self.buckets[usize::from(bucket)].len += 1;
-            self.found.push(Fragment { id, x, y, weight, slot: slot as u16, bucket });
+            let share = 1.0 / count as f32;
+            let xy = Layout::<S>::SLOT_XY[slot];
+            let at = |axis: usize| {
+                let corner = (tile.origin_px[axis] + u32::from(xy[axis])) as f32;
+                corner + sum[axis] as f32 * share * (1.0 / 16.0)
+            };
+            let bucket = self.bucket(tile, id);
+            bucket.id.push(id);
+            bucket.x.push(at(0));
+            bucket.y.push(at(1));
+            bucket.weight.push(count as f32 / S as f32);
+            bucket.slot.push(slot as u16);
         }
         nothing as f32 / S as f32
-    }
-
-    /// Sorts by bucket, keeping the order within each.
-    fn order(&mut self) {
-        let mut end = 0;
-        for bucket in &mut self.buckets {
-            bucket.start = end;
-            end += bucket.len.next_multiple_of(LANES);
-            bucket.len = 0;
-        }
-        self.ordered.resize(end, Fragment::default());
-        for fragment in &self.found {
-            let bucket = &mut self.buckets[usize::from(fragment.bucket)];
-            self.ordered[bucket.start + bucket.len] = *fragment;
-            bucket.len += 1;
-        }
-        for bucket in &self.buckets {
-            let end = bucket.start + bucket.len;
-            let pad = Fragment { weight: 0.0, ..self.ordered[end - 1] };
-            self.ordered[end..end.next_multiple_of(LANES)].fill(pad);
-        }
     }
 }

@@ -55,17 +55,58 @@ fn raster_body<const AVX2: bool, const S: usize, const IDS: bool, const SIDE: us
         let chunk = &chunks[index as usize];
         for &t in chunk.bins.of(tile) {
             let triangle = &chunk.triangles[t as usize];
+            let blocks = Blocks::new::<S, SIDE>(triangle, origin_px);
+            if blocks.all_hide(triangle.nearest, SIDE >> Layout::<S>::BLOCK_LOG2, farthest) {
+                continue;
+            }
             let id = first_id(index as usize) + t;
-            if triangle.large {
+            let mut edges = Edges::new::<S>(triangle, origin_px);
+            let last_step = SIDE as i32 * Layout::<S>::GRID_PER_PX - 1;
+            if triangle.large && !edges.forgotten_inside(last_step) {
                 raster_triangle::<AVX2, S, IDS, SIDE, true>(
-                    triangle, id, origin_px, depth, ids, farthest,
+                    triangle,
+                    id,
+                    origin_px,
+                    (&edges, blocks),
+                    (depth, ids, farthest),
                 );
             } else {
                 raster_triangle::<AVX2, S, IDS, SIDE, false>(
-                    triangle, id, origin_px, depth, ids, farthest,
+                    triangle,
+                    id,
+                    origin_px,
+                    (&edges, blocks),
+                    (depth, ids, farthest),
                 );
             }
         }
+    }
+}
+
+/// First and last column, then row, of the blocks that a triangle may touch.
+#[derive(Clone, Copy)]
+struct Blocks([i32; 4]);
+
+impl Blocks {
+    #[inline(always)]
+    fn new<const S: usize, const SIDE: usize>(t: &Triangle, origin_px: [i32; 2]) -> Self {
+        let log2 = Layout::<S>::BLOCK_LOG2;
+        let side = SIDE as i32 - 1;
+        let first = |px: u16, axis: usize| (i32::from(px) - origin_px[axis]).max(0) >> log2;
+        let last = |px: u16, axis: usize| (i32::from(px) - origin_px[axis]).min(side) >> log2;
+        let p = t.pixels;
+        Self([first(p[0], 0), last(p[1], 0), first(p[2], 1), last(p[3], 1)])
+    }
+
+    /// Whether all samples of all these blocks are at least as near as `nearest`.
+    #[inline(always)]
+    fn all_hide(self, nearest: f32, blocks_per_row: usize, farthest: &[f32]) -> bool {
+        let [x0, x1, y0, y1] = self.0;
+        (y0..y1 + 1).all(|y| {
+            let row = y as usize * blocks_per_row;
+            let row = &farthest[row + x0 as usize..row + x1 as usize + 1];
+            row.iter().all(|farthest| nearest <= *farthest)
+        })
     }
 }
 
@@ -99,6 +140,20 @@ impl Edges {
         Self { a, b, at_origin }
     }
 
+    /// Sets all to 0, which is inside, if all of the tile is; says whether it did so.
+    #[inline(always)]
+    fn forgotten_inside(&mut self, last_step: i32) -> bool {
+        let steps = i64::from(last_step);
+        let inside = (0..3).all(|i| {
+            let [a, b] = [self.a[i], self.b[i]].map(|slope| i64::from(slope.min(0)));
+            self.at_origin[i] + (a + b) * steps >= 0
+        });
+        if inside {
+            *self = Self { a: [0; 3], b: [0; 3], at_origin: [0; 3] };
+        }
+        inside
+    }
+
     /// Values at a block's corner, given in grid steps from the tile's origin.
     #[inline(always)]
     fn at<const LARGE: bool>(&self, x: i32, y: i32) -> [i32; 3] {
@@ -129,19 +184,16 @@ fn raster_triangle<
     t: &Triangle,
     id: u32,
     origin_px: [i32; 2],
-    depth: &mut [[f32; BLOCK]],
-    ids: &mut [[u32; BLOCK]],
-    farthest: &mut [f32],
+    (edges, blocks): (&Edges, Blocks),
+    (depth, ids, farthest): (&mut [[f32; BLOCK]], &mut [[u32; BLOCK]], &mut [f32]),
 ) {
-    let log2 = Layout::<S>::BLOCK_LOG2;
     let block_px = Layout::<S>::BLOCK_PX;
     let grid_per_block = block_px * Layout::<S>::GRID_PER_PX;
-    let blocks_per_row = SIDE >> log2;
-    let edges = Edges::new::<S>(t, origin_px);
-
+    let blocks_per_row = SIDE >> Layout::<S>::BLOCK_LOG2;
     // What a step within the block adds: per lane, and at most.
     let last_step = grid_per_block - 1;
     let mut lane_edges = [[I32x8::<AVX2>::ZERO; 3]; HALVES];
+    let mut first_half = [I32x8::ZERO; 3];
     let mut at_most = [0; 3];
     let [mut slope_x, mut slope_y] = [t.plane.dx as f32, t.plane.dy as f32];
     if !(slope_x.is_finite() && slope_y.is_finite()) {
@@ -151,8 +203,14 @@ fn raster_triangle<
     for (half, (lane_edges, lane_depth)) in lane_edges.iter_mut().zip(&mut lane_depth).enumerate() {
         let (x, y) = lane_steps::<AVX2, S>(half);
         for i in 0..3 {
-            lane_edges[i] = I32x8::splat(edges.a[i]) * x + I32x8::splat(edges.b[i]) * y;
+            lane_edges[i] = if S == 16 || half == 0 {
+                I32x8::splat(edges.a[i]) * x + I32x8::splat(edges.b[i]) * y
+            } else {
+                // The same pattern half a block further down.
+                first_half[i] + I32x8::splat(edges.b[i] * (grid_per_block / 2))
+            };
         }
+        first_half = *lane_edges;
         let (x, y) = lane_px::<AVX2, S>(half);
         *lane_depth = F32x8::splat(slope_x) * x + F32x8::splat(slope_y) * y;
     }
@@ -163,11 +221,7 @@ fn raster_triangle<
         + t.plane.dx * f64::from(origin_px[0])
         + t.plane.dy * f64::from(origin_px[1])) as f32;
 
-    let side = SIDE as i32 - 1;
-    let first = |px: u16, axis: usize| (i32::from(px) - origin_px[axis]).max(0) >> log2;
-    let last = |px: u16, axis: usize| (i32::from(px) - origin_px[axis]).min(side) >> log2;
-    let (bx0, bx1) = (first(t.pixels[0], 0), last(t.pixels[1], 0));
-    let (by0, by1) = (first(t.pixels[2], 1), last(t.pixels[3], 1));
+    let Blocks([bx0, bx1, by0, by1]) = blocks;
     for by in by0..by1 + 1 {
         for bx in bx0..bx1 + 1 {
             let block = by as usize * blocks_per_row + bx as usize;

@@ -22,7 +22,9 @@ impl SampleObjects {
         };
         let blocks = ids.chunks_exact(BLOCK).zip(self.of_sample.chunks_exact_mut(BLOCK));
         for ((ids, objects), uniform) in blocks.zip(&mut self.uniform) {
-            if ids.iter().all(|id| same_chunk(*id, ids[0])) {
+            // Without branches, so that a block is compared at once.
+            let differ = ids.iter().fold(0, |differ, id| differ | (id ^ ids[0]));
+            if same_chunk(differ, 0) {
                 objects.fill(object(ids[0]));
                 *uniform = true;
                 continue;

@@ -349,17 +349,83 @@ impl<const AVX2: bool> I32x8<AVX2> {
         }
     }
 
-    /// Entries of a table; 0 for lanes beyond its end. One load a lane: gather instructions are
-    /// no faster, and much slower on processors that guard them against data sampling.
+    /// The smaller number of two without signs.
     #[inline(always)]
-    pub(in crate::engine::cpu) fn gather_f32(self, table: &[f32]) -> F32x8<AVX2> {
-        F32x8(lanes!(0.0, i => table.get(self.0[i] as u32 as usize).copied().unwrap_or(0.0)))
+    fn min_unsigned(self, other: Self) -> Self {
+        either! {
+            avx2: cast(arch::_mm256_min_epu32(cast(self.0), cast(other.0))),
+            lanes: Self(lanes!(0, i => (self.0[i] as u32).min(other.0[i] as u32) as i32)),
+        }
     }
 
-    /// Entries of a table; 0 for lanes beyond its end.
+    /// Entries of a table, which must not be empty; the last for lanes beyond its end. One load a
+    /// lane: gather instructions are no faster, and much slower on processors that guard them
+    /// against data sampling.
+    #[inline(always)]
+    fn gather<T: Copy>(self, table: &[T], zero: T) -> [T; LANES] {
+        let last = table.len().checked_sub(1).expect("a table has entries");
+        let at = self.min_unsigned(Self::splat(last.min(u32::MAX as usize) as u32 as i32));
+        let mut entries = [zero; LANES];
+        let mut i = 0;
+        while i < LANES {
+            #[expect(unsafe_code, reason = "eight comparisons at once instead of one by one")]
+            // SAFETY: no lane is above `last`, the place of the table's last entry.
+            let entry = unsafe { *table.get_unchecked(at.0[i] as u32 as usize) };
+            entries[i] = entry;
+            i += 1;
+        }
+        entries
+    }
+
+    /// As [`Self::gather`].
+    #[inline(always)]
+    pub(in crate::engine::cpu) fn gather_f32(self, table: &[f32]) -> F32x8<AVX2> {
+        F32x8(self.gather(table, 0.0))
+    }
+
+    /// As [`Self::gather`].
     #[inline(always)]
     pub(in crate::engine::cpu) fn gather_u32(self, table: &[u32]) -> Self {
-        Self(lanes!(0, i => table.get(self.0[i] as u32 as usize).copied().unwrap_or(0) as i32))
+        let entries = self.gather(table, 0);
+        Self(lanes!(0, i => entries[i] as i32))
+    }
+
+    /// Entries of a table of two or more and the entries that follow them; the last two for lanes
+    /// beyond. One load of both a lane.
+    #[inline(always)]
+    pub(in crate::engine::cpu) fn gather_pairs(self, table: &[u32]) -> [Self; 2] {
+        let last = table.len().checked_sub(2).expect("a table of pairs has two entries");
+        let at = self.min_unsigned(Self::splat(last.min(u32::MAX as usize) as u32 as i32));
+        let mut both = [0; LANES];
+        let mut i = 0;
+        while i < LANES {
+            let at = at.0[i] as u32 as usize;
+            #[expect(unsafe_code, reason = "eight comparisons at once instead of one by one")]
+            // SAFETY: no lane is above `last`, the place of the table's last entry but one.
+            let pair = unsafe { [*table.get_unchecked(at), *table.get_unchecked(at + 1)] };
+            both[i] = u64::from(pair[0]) | u64::from(pair[1]) << 32;
+            i += 1;
+        }
+        either! {
+            avx2: {
+                // Lanes 0, 1, 4, 5 and 2, 3, 6, 7: shuffling works within halves.
+                let low = arch::_mm256_set_epi64x(
+                    both[5] as i64, both[4] as i64, both[1] as i64, both[0] as i64,
+                );
+                let high = arch::_mm256_set_epi64x(
+                    both[7] as i64, both[6] as i64, both[3] as i64, both[2] as i64,
+                );
+                let (low, high) = (cast(low), cast(high));
+                [
+                    cast(arch::_mm256_shuffle_ps::<0b10_00_10_00>(low, high)),
+                    cast(arch::_mm256_shuffle_ps::<0b11_01_11_01>(low, high)),
+                ]
+            },
+            lanes: [
+                Self(lanes!(0, i => both[i] as i32)),
+                Self(lanes!(0, i => (both[i] >> 32) as i32)),
+            ],
+        }
     }
 
     #[inline(always)]
@@ -372,6 +438,8 @@ impl<const AVX2: bool> I32x8<AVX2> {
 }
 
 impl<const AVX2: bool> Mask8<AVX2> {
+    pub(in crate::engine::cpu) const NONE: Self = Self([0; LANES]);
+
     /// The first value where set, the second elsewhere.
     #[inline(always)]
     pub(in crate::engine::cpu) fn select(
@@ -412,6 +480,44 @@ impl<const AVX2: bool> Mask8<AVX2> {
                 ((m[0] | m[4]) | (m[1] | m[5])) | ((m[2] | m[6]) | (m[3] | m[7])) != 0
             },
         }
+    }
+}
+
+/// Rows to columns.
+#[inline(always)]
+pub(in crate::engine::cpu) fn transposed<const AVX2: bool>(
+    rows: [[f32; LANES]; LANES],
+) -> [F32x8<AVX2>; LANES] {
+    either! {
+        avx2: {
+            // Halves of rows 0 and 4, 1 and 5 and so on, then 4x4 within halves.
+            let r: [[arch::__m128; 2]; LANES] = cast(rows);
+            let mut columns = [F32x8::ZERO; LANES];
+            let mut half = 0;
+            while half < 2 {
+                let a = arch::_mm256_set_m128(r[4][half], r[0][half]);
+                let b = arch::_mm256_set_m128(r[5][half], r[1][half]);
+                let c = arch::_mm256_set_m128(r[6][half], r[2][half]);
+                let d = arch::_mm256_set_m128(r[7][half], r[3][half]);
+                let (ab, cd) = (arch::_mm256_unpacklo_ps(a, b), arch::_mm256_unpacklo_ps(c, d));
+                let (ab2, cd2) = (arch::_mm256_unpackhi_ps(a, b), arch::_mm256_unpackhi_ps(c, d));
+                columns[half * 4] = cast(arch::_mm256_shuffle_ps::<0b01_00_01_00>(ab, cd));
+                columns[half * 4 + 1] = cast(arch::_mm256_shuffle_ps::<0b11_10_11_10>(ab, cd));
+                columns[half * 4 + 2] = cast(arch::_mm256_shuffle_ps::<0b01_00_01_00>(ab2, cd2));
+                columns[half * 4 + 3] = cast(arch::_mm256_shuffle_ps::<0b11_10_11_10>(ab2, cd2));
+                half += 1;
+            }
+            columns
+        },
+        lanes: {
+            let mut columns = [F32x8::ZERO; LANES];
+            for (lane, row) in rows.iter().enumerate() {
+                for (column, value) in columns.iter_mut().zip(row) {
+                    column.0[lane] = *value;
+                }
+            }
+            columns
+        },
     }
 }
 
@@ -558,6 +664,11 @@ mod tests {
         out.push(j.gather_f32(&table).0.map(f32::to_bits));
         out.push((j >> 22).gather_f32(&table).0.map(f32::to_bits));
         out.push(i.gt(j).select(a, b).0.map(f32::to_bits));
+        let table: Vec<u32> = (0..1000).map(|v| v * v + 3).collect();
+        out.extend(i.gather_pairs(&table).map(|v| v.0.map(|lane| lane as u32)));
+        out.extend((j >> 22).gather_pairs(&table).map(|v| v.0.map(|lane| lane as u32)));
+        let rows = std::array::from_fn(|row| a.0.map(|v| v + row as f32));
+        out.extend(transposed::<AVX2>(rows).map(|v| v.0.map(f32::to_bits)));
     }
 
     #[test]

@@ -208,16 +208,14 @@ impl TilePass<'_> {
             if let Some((low, high)) = self.tile_box(origin_px, &s.depth) {
                 shading.stage.lighting.reaching(low, high, &mut s.reaching);
             }
-            for bucket in &s.fragments.buckets {
+            for bucket in s.fragments.buckets() {
                 let draw = &self.list.draws[bucket.draw as usize];
                 let drawn = DrawnSurface {
                     surface: &shading.surfaces[draw.material as usize],
                     double_sided: draw.double_sided,
                     mirrored: self.placed.mirrored[draw.object as usize],
                 };
-                let end = bucket.start + bucket.len.next_multiple_of(LANES);
-                let fragments = &s.fragments.ordered[bucket.start..end];
-                shade(self.level, &shading.stage, drawn, &s.reaching, fragments, &mut s.color);
+                shade(self.level, &shading.stage, drawn, &s.reaching, bucket, &mut s.color);
             }
         });
     }
@@ -277,11 +275,19 @@ fn copy_out<const S: usize, T: Copy, const N: usize>(
     slots: &[[T; N]; TILE * TILE],
 ) {
     let left = tile[0] as usize * TILE;
+    let side = Layout::<S>::BLOCK_PX as usize;
     for y in 0..size[1] {
         let start = (y * width as usize + left) * N;
         let (line, _) = row[start..start + size[0] * N].as_chunks_mut::<N>();
-        for (x, pixel) in line.iter_mut().enumerate() {
-            *pixel = slots[Layout::<S>::slot(x, y) & (TILE * TILE - 1)];
+        // The pixels of a block's row are neighbours in both.
+        let mut slot = Layout::<S>::slot(0, y);
+        let mut blocks = line.chunks_exact_mut(side);
+        for pixels in &mut blocks {
+            pixels.copy_from_slice(&slots[slot..slot + side]);
+            slot += side * side;
         }
+        let rest = blocks.into_remainder();
+        let len = rest.len();
+        rest.copy_from_slice(&slots[slot.min(TILE * TILE - len)..][..len]);
     }
 }

@@ -21,8 +21,10 @@
 
 use std::f32::consts::PI;
 
+use super::GROUPS;
 use super::material::Look;
-use crate::draw::abi::{Lights, PointLight};
+use super::surface::Points;
+use crate::draw::abi::Lights;
 use crate::engine::cpu::shadow::SunShadow;
 use crate::engine::cpu::simd::{F32x8, Vec3x8};
 
@@ -30,12 +32,37 @@ use crate::engine::cpu::simd::{F32x8, Vec3x8};
 /// where light goes round the terminator, the body must not shade itself at once.
 const WRAP_OFFSET_M: f32 = 0.04;
 
+/// f0 of what is not metal.
+const DIELECTRIC: f32 = 0.04;
+
+/// A point light, scaled by the exposure.
+#[derive(Clone, Copy)]
+struct Point {
+    position: [f32; 3],
+    color_cd: [f32; 3],
+    /// Squared range.
+    range_m2: f32,
+    /// Its inverse.
+    per_range_m2: f32,
+    /// Inverse of the radius.
+    per_radius_m: f32,
+}
+
+/// Light that goes round the terminator.
+#[derive(Clone, Copy)]
+struct Wrap {
+    /// How far, 0 for not at all.
+    by: f32,
+    /// Keeps the energy.
+    scale: f32,
+}
+
 /// All lights, scaled by the exposure.
 pub(in crate::engine::cpu) struct Lighting<'a> {
     /// Unit direction towards the sun and its colour.
     sun: Option<([f32; 3], [f32; 3])>,
     shadow: Option<SunShadow<'a>>,
-    points: Vec<PointLight>,
+    points: Vec<Point>,
     sky: [f32; 3],
     ground: [f32; 3],
     /// World +Y in view space.
@@ -56,7 +83,13 @@ impl<'a> Lighting<'a> {
             points: lights
                 .points
                 .iter()
-                .map(|p| PointLight { color_cd: exposed(p.color_cd), ..*p })
+                .map(|p| Point {
+                    position: p.position,
+                    color_cd: exposed(p.color_cd),
+                    range_m2: p.range_m * p.range_m,
+                    per_range_m2: 1.0 / (p.range_m * p.range_m),
+                    per_radius_m: 1.0 / p.radius_m.max(1e-6),
+                })
                 .collect(),
             sky: exposed(lights.sky_lux),
             ground: exposed(lights.ground_lux),
@@ -77,45 +110,84 @@ impl<'a> Lighting<'a> {
                 .map(|i| (low[i] - light.position[i]).max(light.position[i] - high[i]).max(0.0))
                 .map(|d| d * d)
                 .sum();
-            if distance2 < light.range_m * light.range_m {
+            if distance2 < light.range_m2 {
                 out.push(index as u32);
             }
         }
     }
 
-    /// Light that eight fragments send to the camera, times the exposure.
+    /// Light that fragments send to the camera, times the exposure.
     #[inline(always)]
     pub(super) fn reflected<const AVX2: bool>(
         &self,
-        position: Vec3x8<AVX2>,
-        surface_normal: Vec3x8<AVX2>,
-        look: &Look<AVX2>,
+        points: &[Points<AVX2>],
+        looks: &[Look<AVX2>],
         (metallic, wrap): (f32, f32),
         reaching: &[u32],
-    ) -> Vec3x8<AVX2> {
-        let reflector = Reflector::new(position, look, metallic, wrap);
-        let mut sum = self.surrounding(&reflector, look.roughness);
+        out: &mut [Vec3x8<AVX2>],
+    ) {
+        let mut reflectors = [Reflector::ZERO; GROUPS];
+        let reflectors = &mut reflectors[..out.len()];
+        for (group, reflector) in reflectors.iter_mut().enumerate() {
+            let look = &looks[group];
+            *reflector = Reflector::new(points[group].position, look, metallic);
+            out[group] = self.surrounding(reflector, look.roughness);
+        }
+        let wrap = Wrap { by: wrap, scale: 1.0 / ((1.0 + wrap) * (1.0 + wrap)) };
+        if metallic > 0.0 {
+            self.add_lights::<AVX2, true>(points, reflectors, (wrap, reaching), out);
+        } else {
+            self.add_lights::<AVX2, false>(points, reflectors, (wrap, reaching), out);
+        }
+    }
+
+    /// Adds the sun and the point lights.
+    #[inline(always)]
+    fn add_lights<const AVX2: bool, const METAL: bool>(
+        &self,
+        points: &[Points<AVX2>],
+        reflectors: &[Reflector<AVX2>],
+        (wrap, reaching): (Wrap, &[u32]),
+        out: &mut [Vec3x8<AVX2>],
+    ) {
         if let Some((direction, color)) = self.sun {
-            let to_light = Vec3x8::splat(direction);
-            if reflector.reached_from(to_light) {
-                let lit = match &self.shadow {
-                    Some(shadow) => {
-                        let cosine = surface_normal.dot(to_light);
-                        shadow.lit(position, surface_normal, cosine, wrap * WRAP_OFFSET_M)
-                    }
-                    None => F32x8::ONE,
-                };
-                sum = sum + reflector.reflect(to_light, Vec3x8::splat(color).scale(lit));
+            let to_sun = Vec3x8::splat(direction);
+            for ((reflector, points), out) in reflectors.iter().zip(points).zip(out.iter_mut()) {
+                let cosine = reflector.normal.dot(to_sun);
+                if !cosine.gt(F32x8::splat(-wrap.by)).any() {
+                    continue;
+                }
+                let lit = self.sunlit(points, to_sun, wrap.by);
+                if lit.gt(F32x8::ZERO).any() {
+                    let l_dot_v = to_sun.dot(reflector.to_viewer);
+                    let light = (Vec3x8::splat(color), lit);
+                    *out = *out + reflector.reflect::<METAL>(wrap, cosine, l_dot_v, light);
+                }
             }
         }
         for &index in reaching {
-            let light = &self.points[index as usize];
-            let (to_light, irradiance) = incoming(light, position);
-            if reflector.reached_from(to_light) {
-                sum = sum + reflector.reflect(to_light, irradiance);
+            let light = self.points[index as usize];
+            for (reflector, out) in reflectors.iter().zip(out.iter_mut()) {
+                add_point_light::<AVX2, METAL>(&light, wrap, reflector, out);
             }
         }
-        sum
+    }
+
+    /// Share of the sun's light that reaches eight fragments.
+    #[inline(always)]
+    fn sunlit<const AVX2: bool>(
+        &self,
+        points: &Points<AVX2>,
+        to_sun: Vec3x8<AVX2>,
+        wrap: f32,
+    ) -> F32x8<AVX2> {
+        match &self.shadow {
+            Some(shadow) => {
+                let cosine = points.normal.dot(to_sun);
+                shadow.lit(points.position, points.normal, cosine, wrap * WRAP_OFFSET_M)
+            }
+            None => F32x8::ONE,
+        }
     }
 
     /// Sky and ground.
@@ -125,20 +197,21 @@ impl<'a> Lighting<'a> {
         r: &Reflector<AVX2>,
         roughness: F32x8<AVX2>,
     ) -> Vec3x8<AVX2> {
-        let mirrored = r.normal.scale(r.n_dot_v + r.n_dot_v) - r.to_viewer;
+        let up = Vec3x8::splat(self.up);
+        let upwards = r.normal.dot(up);
+        let mirrored_upwards = (r.n_dot_v + r.n_dot_v) * upwards - r.to_viewer.dot(up);
         let [scale, bias] = split_sum(roughness, r.n_dot_v);
         let bias = Vec3x8::new(bias, bias, bias);
-        let mirror = r.f0.scale(scale) + bias;
-        self.hemisphere(r.normal) * r.diffuse
-            + (self.hemisphere(mirrored) * mirror).scale(F32x8::splat(1.0 / PI))
+        let mirror = (r.f0.scale(scale) + bias).scale(F32x8::splat(1.0 / PI));
+        self.hemisphere(upwards) * r.diffuse + self.hemisphere(mirrored_upwards) * mirror
     }
 
-    /// Irradiance of surfaces that face these directions.
+    /// Irradiance of surfaces that face so far upwards, -1..1.
     #[inline(always)]
-    fn hemisphere<const AVX2: bool>(&self, d: Vec3x8<AVX2>) -> Vec3x8<AVX2> {
+    fn hemisphere<const AVX2: bool>(&self, upwards: F32x8<AVX2>) -> Vec3x8<AVX2> {
         let half = F32x8::splat(0.5);
-        let upwards = (d.dot(Vec3x8::splat(self.up)) * half + half).clamp(0.0, 1.0);
-        Vec3x8::splat(self.ground).mix(Vec3x8::splat(self.sky), upwards)
+        let share = (upwards * half + half).clamp(0.0, 1.0);
+        Vec3x8::splat(self.ground).mix(Vec3x8::splat(self.sky), share)
     }
 }
 
@@ -147,21 +220,29 @@ fn unit(v: [f32; 3]) -> [f32; 3] {
     v.map(|x| x / length)
 }
 
-/// Direction towards a point light and the illuminance of a surface that faces it.
+/// Adds what eight fragments reflect of a point light.
 #[inline(always)]
-fn incoming<const AVX2: bool>(
-    light: &PointLight,
-    position: Vec3x8<AVX2>,
-) -> (Vec3x8<AVX2>, Vec3x8<AVX2>) {
-    let to_light = Vec3x8::splat(light.position) - position;
+fn add_point_light<const AVX2: bool, const METAL: bool>(
+    light: &Point,
+    wrap: Wrap,
+    reflector: &Reflector<AVX2>,
+    out: &mut Vec3x8<AVX2>,
+) {
+    let to_light = Vec3x8::splat(light.position) - reflector.position;
     let distance2 = to_light.dot(to_light).max(F32x8::splat(1e-12));
-    let inverse = F32x8::ONE / distance2.sqrt();
-    let at_least = F32x8::splat(1.0 / light.radius_m.max(1e-6));
-    let near = inverse.min(at_least);
-    let in_range = distance2 * F32x8::splat(1.0 / (light.range_m * light.range_m));
+    let distance = distance2.sqrt();
+    let facing = reflector.normal.dot(to_light);
+    if !facing.gt(distance * F32x8::splat(-wrap.by)).any() {
+        return;
+    }
+    let inverse = F32x8::ONE / distance;
+    let near = inverse.min(F32x8::splat(light.per_radius_m));
+    let in_range = distance2 * F32x8::splat(light.per_range_m2);
     let window = (F32x8::ONE - in_range * in_range).max(F32x8::ZERO);
-    let falloff = near * near * window * window;
-    (to_light.scale(inverse), Vec3x8::splat(light.color_cd).scale(falloff))
+    let share = near * window;
+    let l_dot_v = to_light.dot(reflector.to_viewer) * inverse;
+    let light = (Vec3x8::splat(light.color_cd), share * share);
+    *out = *out + reflector.reflect::<METAL>(wrap, facing * inverse, l_dot_v, light);
 }
 
 /// Factor on f0 and offset of the surrounding's mirror term.
@@ -177,66 +258,91 @@ fn split_sum<const AVX2: bool>(roughness: F32x8<AVX2>, n_dot_v: F32x8<AVX2>) -> 
 }
 
 /// What the reflectance needs of eight fragments, whatever the light.
+#[derive(Clone, Copy)]
 struct Reflector<const AVX2: bool> {
+    position: Vec3x8<AVX2>,
     normal: Vec3x8<AVX2>,
     to_viewer: Vec3x8<AVX2>,
     n_dot_v: F32x8<AVX2>,
     f0: Vec3x8<AVX2>,
     /// Lambert term over irradiance.
     diffuse: Vec3x8<AVX2>,
-    /// Squared perceptual roughness.
-    a: F32x8<AVX2>,
-    wrap: f32,
+    /// `a^2 - 1`.
+    lobe: F32x8<AVX2>,
+    /// `a^2 / (2 pi)`.
+    peak: F32x8<AVX2>,
+    /// Factor on `n.l` and offset that give `mix(2 n.l n.v, n.l + n.v, a)`.
+    visibility: [F32x8<AVX2>; 2],
 }
 
 impl<const AVX2: bool> Reflector<AVX2> {
+    const ZERO: Self = Self {
+        position: Vec3x8::ZERO,
+        normal: Vec3x8::ZERO,
+        to_viewer: Vec3x8::ZERO,
+        n_dot_v: F32x8::ZERO,
+        f0: Vec3x8::ZERO,
+        diffuse: Vec3x8::ZERO,
+        lobe: F32x8::ZERO,
+        peak: F32x8::ZERO,
+        visibility: [F32x8::ZERO; 2],
+    };
+
     #[inline(always)]
-    fn new(position: Vec3x8<AVX2>, look: &Look<AVX2>, metallic: f32, wrap: f32) -> Self {
+    fn new(position: Vec3x8<AVX2>, look: &Look<AVX2>, metallic: f32) -> Self {
         let to_viewer = (Vec3x8::ZERO - position).normalized();
-        let dielectric = Vec3x8::splat([0.04; 3]);
+        let n_dot_v = look.normal.dot(to_viewer).clamp(1e-3, 1.0);
+        let a = look.roughness * look.roughness;
+        let a2 = a * a;
+        let both_ways = n_dot_v + n_dot_v;
         Self {
+            position,
             normal: look.normal,
             to_viewer,
-            n_dot_v: look.normal.dot(to_viewer).clamp(1e-3, 1.0),
-            f0: dielectric.mix(look.albedo, F32x8::splat(metallic)),
+            n_dot_v,
+            f0: Vec3x8::splat([DIELECTRIC; 3]).mix(look.albedo, F32x8::splat(metallic)),
             diffuse: look.albedo.scale(F32x8::splat((1.0 - metallic) / PI)),
-            a: look.roughness * look.roughness,
-            wrap,
+            lobe: a2 - F32x8::ONE,
+            peak: a2 * F32x8::splat(0.5 / PI),
+            visibility: [both_ways + (F32x8::ONE - both_ways) * a, n_dot_v * a],
         }
     }
 
-    /// Whether light from a direction can reach any of the eight.
+    /// Light sent to the viewer, given the cosines between light, normal and viewer, and the
+    /// illuminance of a surface that faces the light: its colour, and a share of it. Where nothing
+    /// is of `METAL`, f0 is the same for all.
     #[inline(always)]
-    fn reached_from(&self, to_light: Vec3x8<AVX2>) -> bool {
-        self.normal.dot(to_light).gt(F32x8::splat(-self.wrap)).any()
-    }
-
-    /// Light sent to the viewer, given the illuminance of a surface that faces the light.
-    #[inline(always)]
-    fn reflect(&self, to_light: Vec3x8<AVX2>, illuminance: Vec3x8<AVX2>) -> Vec3x8<AVX2> {
+    fn reflect<const METAL: bool>(
+        &self,
+        wrap: Wrap,
+        cosine: F32x8<AVX2>,
+        l_dot_v: F32x8<AVX2>,
+        (color, share): (Vec3x8<AVX2>, F32x8<AVX2>),
+    ) -> Vec3x8<AVX2> {
         let s = F32x8::splat;
-        let cosine = self.normal.dot(to_light);
         let n_dot_l = cosine.max(F32x8::ZERO);
         // |l + v|^2 = 2 + 2 l.v; n.h and v.h follow from it.
-        let l_dot_v = to_light.dot(self.to_viewer);
         let halfway2 = (s(2.0) + l_dot_v + l_dot_v).max(s(1e-4));
         let n_dot_sum = cosine + self.n_dot_v;
-        let a2 = self.a * self.a;
         // A normal that leans away from the viewer must not push n.h over 1, to the lobe's pole.
-        let lobe = (n_dot_sum * n_dot_sum).min(halfway2) * (a2 - F32x8::ONE) + halfway2;
-        let visibility = (n_dot_l + self.n_dot_v) * self.a
-            + s(2.0) * n_dot_l * self.n_dot_v * (F32x8::ONE - self.a);
-        let mirror =
-            a2 * s(0.5 / PI) * halfway2 * halfway2 / (lobe * lobe * visibility).max(s(1e-30));
+        let lobe = (n_dot_sum * n_dot_sum).min(halfway2) * self.lobe + halfway2;
+        let visibility = n_dot_l * self.visibility[0] + self.visibility[1];
+        let mirror = self.peak * halfway2 * halfway2 / (lobe * lobe * visibility).max(s(1e-30));
+        let mirror = mirror * n_dot_l * share;
         let grazing = (F32x8::ONE - halfway2.sqrt() * s(0.5)).max(F32x8::ZERO);
         let grazing2 = grazing * grazing;
-        let fresnel = self.f0.mix(Vec3x8::splat([1.0; 3]), grazing2 * grazing2 * grazing);
-        let lambert = if self.wrap > 0.0 {
-            let w = 1.0 + self.wrap;
-            (cosine + s(self.wrap)).max(F32x8::ZERO) * s(1.0 / (w * w))
+        let fresnel = grazing2 * grazing2 * grazing;
+        let mirror = if METAL {
+            self.f0.mix(Vec3x8::splat([1.0; 3]), fresnel).scale(mirror)
+        } else {
+            let mirror = (fresnel * s(1.0 - DIELECTRIC) + s(DIELECTRIC)) * mirror;
+            Vec3x8::new(mirror, mirror, mirror)
+        };
+        let lambert = if wrap.by > 0.0 {
+            (cosine + s(wrap.by)).max(F32x8::ZERO) * s(wrap.scale)
         } else {
             n_dot_l
         };
-        (self.diffuse.scale(lambert) + fresnel.scale(mirror * n_dot_l)) * illuminance
+        (self.diffuse.scale(lambert * share) + mirror) * color
     }
 }

@@ -1,6 +1,7 @@
 //! Materials: maps, hue and masked layers, down to albedo, roughness and normal.
 
-use super::surface::{Points, TexturePoints};
+use super::GROUPS;
+use super::surface::{Points, TexturePoints, Textured};
 use super::texture::{Sampler, footprint};
 use crate::draw::DrawList;
 use crate::draw::abi::Material;
@@ -24,6 +25,7 @@ pub(in crate::engine::cpu) struct Surface<'a> {
 }
 
 /// What light sees of eight fragments.
+#[derive(Clone, Copy)]
 pub(super) struct Look<const AVX2: bool> {
     /// Linear.
     pub(super) albedo: Vec3x8<AVX2>,
@@ -31,6 +33,11 @@ pub(super) struct Look<const AVX2: bool> {
     pub(super) roughness: F32x8<AVX2>,
     /// Unit, view space.
     pub(super) normal: Vec3x8<AVX2>,
+}
+
+impl<const AVX2: bool> Look<AVX2> {
+    pub(super) const ZERO: Self =
+        Self { albedo: Vec3x8::ZERO, roughness: F32x8::ZERO, normal: Vec3x8::ZERO };
 }
 
 impl<'a> Surface<'a> {
@@ -62,59 +69,75 @@ impl<'a> Surface<'a> {
         }
     }
 
-    /// Whether texture coordinates are needed.
-    pub(super) const fn textured(&self) -> bool {
-        self.albedo_map.is_some()
-            || self.detail.is_some()
-            || self.normal_map.is_some()
-            || self.mask.is_some()
+    /// What look-ups need.
+    pub(super) const fn textured(&self) -> Textured {
+        Textured {
+            coordinates: self.albedo_map.is_some()
+                || self.detail.is_some()
+                || self.normal_map.is_some()
+                || self.mask.is_some(),
+            directions: self.normal_map.is_some(),
+        }
     }
 
-    /// The material at eight fragments whose normals face the viewer.
+    /// The material at fragments whose normals face the viewer.
     #[inline(always)]
-    pub(super) fn look<const AVX2: bool>(&self, points: &Points<AVX2>) -> Look<AVX2> {
-        let mut look = Look {
-            albedo: Vec3x8::splat(self.base_color),
-            roughness: F32x8::splat(self.roughness),
-            normal: points.normal,
-        };
-        if let Some(texture) = &points.texture {
-            self.apply_repeated(texture, &mut look);
-            if let Some(mask) = &self.mask {
+    pub(super) fn look<const AVX2: bool>(&self, points: &[Points<AVX2>], looks: &mut [Look<AVX2>]) {
+        for (look, points) in looks.iter_mut().zip(points) {
+            *look = Look {
+                albedo: Vec3x8::splat(self.base_color),
+                roughness: F32x8::splat(self.roughness),
+                normal: points.normal,
+            };
+        }
+        self.apply_repeated(points, looks);
+        if let Some(mask) = &self.mask {
+            for (look, points) in looks.iter_mut().zip(points) {
+                let texture = &points.texture;
                 let size = footprint(texture.d_dx, texture.d_dy);
-                self.apply_layers(mask.sample::<AVX2, 4>(texture.uv, size), &mut look);
+                self.apply_layers(mask.sample::<AVX2, 4>(texture.uv, size), look);
             }
         }
-        look
     }
 
     /// Albedo, detail and normal map, which share the repeated coordinates.
     #[inline(always)]
-    fn apply_repeated<const AVX2: bool>(
-        &self,
-        texture: &TexturePoints<AVX2>,
-        look: &mut Look<AVX2>,
-    ) {
+    fn apply_repeated<const AVX2: bool>(&self, points: &[Points<AVX2>], looks: &mut [Look<AVX2>]) {
+        if self.albedo_map.is_none() && self.detail.is_none() && self.normal_map.is_none() {
+            return;
+        }
         let repeat = [F32x8::splat(self.uv_repeat[0]), F32x8::splat(self.uv_repeat[1])];
-        let uv = times(texture.uv, repeat);
-        let size = footprint(times(texture.d_dx, repeat), times(texture.d_dy, repeat));
+        let mut places = [([F32x8::ZERO; 2], F32x8::ZERO); GROUPS];
+        for ((uv, size), points) in places.iter_mut().zip(points) {
+            let t = &points.texture;
+            *uv = times(t.uv, repeat);
+            *size = footprint(times(t.d_dx, repeat), times(t.d_dy, repeat));
+        }
         if let Some(map) = &self.albedo_map {
-            let [r, g, b] = map.sample::<AVX2, 3>(uv, size);
-            look.albedo = look.albedo * Vec3x8::new(r, g, b);
+            for (look, (uv, size)) in looks.iter_mut().zip(&places) {
+                let [r, g, b] = map.sample::<AVX2, 3>(*uv, *size);
+                look.albedo = look.albedo * Vec3x8::new(r, g, b);
+            }
             if let Some(turn) = self.hue_offset {
-                look.albedo = rotate_hue(look.albedo, turn);
+                for look in looks.iter_mut() {
+                    look.albedo = rotate_hue(look.albedo, turn);
+                }
             }
         }
         if let Some((map, strength)) = &self.detail {
-            let [r] = map.sample::<AVX2, 1>(uv, size);
-            let factor = F32x8::ONE + F32x8::splat(*strength) * (r + r - F32x8::ONE);
-            look.albedo = look.albedo.scale(factor.max(F32x8::ZERO));
+            for (look, (uv, size)) in looks.iter_mut().zip(&places) {
+                let [r] = map.sample::<AVX2, 1>(*uv, *size);
+                let factor = F32x8::ONE + F32x8::splat(*strength) * (r + r - F32x8::ONE);
+                look.albedo = look.albedo.scale(factor.max(F32x8::ZERO));
+            }
         }
         if let Some((map, strength)) = &self.normal_map {
-            let [x, y, z] = map.sample::<AVX2, 3>(uv, size);
-            let (one, strength) = (F32x8::ONE, F32x8::splat(*strength));
-            let bend = [(x + x - one) * strength, (y + y - one) * strength];
-            look.normal = bent(look.normal, bend, z + z - one, texture);
+            for ((look, (uv, size)), points) in looks.iter_mut().zip(&places).zip(points) {
+                let [x, y, z] = map.sample::<AVX2, 3>(*uv, *size);
+                let (one, strength) = (F32x8::ONE, F32x8::splat(*strength));
+                let bend = [(x + x - one) * strength, (y + y - one) * strength];
+                look.normal = bent(look.normal, bend, z + z - one, &points.texture);
+            }
         }
     }
 

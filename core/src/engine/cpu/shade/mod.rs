@@ -10,13 +10,21 @@ mod surface;
 mod texture;
 
 use super::display::tone_map;
-use super::fragment::Fragment;
+use super::fragment::Bucket;
 use super::samples::TILE;
 use super::simd::{F32x8, LANES, Vec3x8, kernel};
+
+use self::material::Look;
+use self::surface::Points;
 
 pub(super) use light::Lighting;
 pub(super) use material::Surface;
 pub(super) use surface::{Geometry, Rays};
+
+/// How many times eight fragments go through the steps together: so that what a step needs of
+/// the material and the lights is set up once for all of them, its loop is short, and what lies
+/// between the steps stays in the nearest cache.
+const GROUPS: usize = 8;
 
 /// Linear display light of a tile's pixel slots, by channel.
 pub(super) type TileColor = [[f32; TILE * TILE]; 3];
@@ -39,12 +47,12 @@ pub(super) struct DrawnSurface<'a> {
 }
 
 kernel! {
-    /// Shades the fragments of one draw, a multiple of eight of them.
+    /// Shades the fragments of one draw.
     fn shade(
         stage: &Stage<'_>,
         drawn: DrawnSurface<'_>,
         reaching: &[u32],
-        fragments: &[Fragment],
+        fragments: &Bucket,
         color: &mut TileColor,
     ) = shade_body
 }
@@ -54,35 +62,78 @@ fn shade_body<const AVX2: bool>(
     stage: &Stage<'_>,
     drawn: DrawnSurface<'_>,
     reaching: &[u32],
-    fragments: &[Fragment],
+    fragments: &Bucket,
     color: &mut TileColor,
 ) {
     let surface = drawn.surface;
-    for eight in fragments.chunks_exact(LANES) {
-        let mut points =
-            surface::points::<AVX2>(&stage.geometry, &stage.rays, eight, surface.textured());
-        if drawn.double_sided {
-            let turned = Vec3x8::ZERO - points.normal;
-            let (away, towards) =
-                if drawn.mirrored { (points.normal, turned) } else { (turned, points.normal) };
-            points.normal = Vec3x8::new(
-                points.back.select(away.x, towards.x),
-                points.back.select(away.y, towards.y),
-                points.back.select(away.z, towards.z),
-            );
+    let mut points = [Points::<AVX2>::ZERO; GROUPS];
+    let mut looks = [Look::ZERO; GROUPS];
+    let mut light = [Vec3x8::ZERO; GROUPS];
+    let groups = fragments.id.len() / LANES;
+    let mut first = 0;
+    while first < groups {
+        let count = GROUPS.min(groups - first);
+        for (group, points) in points[..count].iter_mut().enumerate() {
+            *points = visible_points(stage, drawn, fragments, (first + group) * LANES);
         }
-        let look = surface.look(&points);
-        let light = stage.lighting.reflected(
-            points.position,
-            points.normal,
-            &look,
-            (surface.metallic, surface.wrap),
-            reaching,
+        let (points, looks, light) = (&points[..count], &mut looks[..count], &mut light[..count]);
+        surface.look(points, looks);
+        stage.lighting.reflected(points, looks, (surface.metallic, surface.wrap), reaching, light);
+        for (group, light) in light.iter().enumerate() {
+            add_to_picture(*light, fragments, (first + group) * LANES, color);
+        }
+        first += count;
+    }
+}
+
+/// The surface under eight fragments, its normals turned to the viewer where that is wanted.
+#[inline(always)]
+fn visible_points<const AVX2: bool>(
+    stage: &Stage<'_>,
+    drawn: DrawnSurface<'_>,
+    fragments: &Bucket,
+    first: usize,
+) -> Points<AVX2> {
+    let ids = fragments.id[first..].first_chunk().expect("padded to a multiple of eight");
+    let at = [F32x8::load(&fragments.x[first..]), F32x8::load(&fragments.y[first..])];
+    let textured = drawn.surface.textured();
+    let mut points = surface::points(&stage.geometry, &stage.rays, ids, at, textured);
+    if drawn.double_sided {
+        let turned = Vec3x8::ZERO - points.normal;
+        let (away, towards) =
+            if drawn.mirrored { (points.normal, turned) } else { (turned, points.normal) };
+        points.normal = Vec3x8::new(
+            points.back.select(away.x, towards.x),
+            points.back.select(away.y, towards.y),
+            points.back.select(away.z, towards.z),
         );
-        let channels: [F32x8<AVX2>; 3] = [tone_map(light.x), tone_map(light.y), tone_map(light.z)];
-        for (sum, value) in color.iter_mut().zip(channels) {
-            for (fragment, value) in eight.iter().zip(value.0) {
-                sum[usize::from(fragment.slot) & (TILE * TILE - 1)] += value * fragment.weight;
+    }
+    points
+}
+
+/// Adds the display light of eight fragments to their pixels.
+#[inline(always)]
+fn add_to_picture<const AVX2: bool>(
+    light: Vec3x8<AVX2>,
+    fragments: &Bucket,
+    first: usize,
+    color: &mut TileColor,
+) {
+    let weight = F32x8::load(&fragments.weight[first..]);
+    let slots: &[u16; LANES] =
+        fragments.slot[first..].first_chunk().expect("padded to a multiple of eight");
+    let start = usize::from(slots[0]);
+    let strayed =
+        slots.iter().zip(slots[0]..).fold(0, |strayed, (slot, next)| strayed | (slot ^ next));
+    let channels = [tone_map(light.x), tone_map(light.y), tone_map(light.z)];
+    for (sum, value) in color.iter_mut().zip(channels) {
+        let value: F32x8<AVX2> = value * weight;
+        if strayed == 0 {
+            // Neighbouring pixels, as nearly everywhere within surfaces.
+            (F32x8::load(&sum[start..]) + value).store(&mut sum[start..]);
+        } else {
+            for (slot, value) in slots.iter().zip(value.0) {
+                sum[usize::from(*slot) & (TILE * TILE - 1)] += value;
             }
         }
     }

@@ -7,9 +7,8 @@
 
 use crate::draw::abi::View;
 use crate::engine::cpu::chunk::{Chunk, Face, split_id};
-use crate::engine::cpu::fragment::Fragment;
 use crate::engine::cpu::project::Vertex;
-use crate::engine::cpu::simd::{F32x8, LANES, Mask8, Vec3x8};
+use crate::engine::cpu::simd::{F32x8, LANES, Mask8, Vec3x8, transposed};
 
 /// Triangles by id.
 #[derive(Clone, Copy)]
@@ -43,6 +42,7 @@ impl Rays {
 }
 
 /// Surface under eight fragments.
+#[derive(Clone, Copy)]
 pub(super) struct Points<const AVX2: bool> {
     /// View space.
     pub(super) position: Vec3x8<AVX2>,
@@ -50,11 +50,21 @@ pub(super) struct Points<const AVX2: bool> {
     pub(super) normal: Vec3x8<AVX2>,
     /// Where the triangle's counter-clockwise side faces away.
     pub(super) back: Mask8<AVX2>,
-    /// Present where asked for.
-    pub(super) texture: Option<TexturePoints<AVX2>>,
+    /// Zeros where no textures are looked up.
+    pub(super) texture: TexturePoints<AVX2>,
+}
+
+impl<const AVX2: bool> Points<AVX2> {
+    pub(super) const ZERO: Self = Self {
+        position: Vec3x8::ZERO,
+        normal: Vec3x8::ZERO,
+        back: Mask8::NONE,
+        texture: TexturePoints::ZERO,
+    };
 }
 
 /// Texture coordinates under eight fragments.
+#[derive(Clone, Copy)]
 pub(super) struct TexturePoints<const AVX2: bool> {
     pub(super) uv: [F32x8<AVX2>; 2],
     /// Change over a pixel to the right.
@@ -67,112 +77,85 @@ pub(super) struct TexturePoints<const AVX2: bool> {
     pub(super) bitangent: Vec3x8<AVX2>,
 }
 
-/// The triangles of eight fragments: one corner, the two edges from it, and the vertices.
-struct Triangles<'a, const AVX2: bool> {
-    origin: Vec3x8<AVX2>,
-    edge1: Vec3x8<AVX2>,
-    edge2: Vec3x8<AVX2>,
-    corners: [[&'a Vertex; 3]; LANES],
-    /// All eight are the same.
-    same: bool,
+impl<const AVX2: bool> TexturePoints<AVX2> {
+    const ZERO: Self = Self {
+        uv: [F32x8::ZERO; 2],
+        d_dx: [F32x8::ZERO; 2],
+        d_dy: [F32x8::ZERO; 2],
+        tangent: Vec3x8::ZERO,
+        bitangent: Vec3x8::ZERO,
+    };
 }
 
-impl<'a, const AVX2: bool> Triangles<'a, AVX2> {
-    #[inline(always)]
-    fn new(geometry: &Geometry<'a>, fragments: &[Fragment]) -> Self {
-        let first = geometry.corners(fragments[0].id);
-        let mut other = 0;
-        for fragment in fragments {
-            other |= fragment.id ^ fragments[0].id;
-        }
-        let same = other == 0;
-        let mut corners = [first; LANES];
-        let p = if same {
-            [
-                Vec3x8::splat(first[0].position()),
-                Vec3x8::splat(first[1].position()),
-                Vec3x8::splat(first[2].position()),
-            ]
-        } else {
-            for lane in 0..LANES {
-                corners[lane] = geometry.corners(fragments[lane].id);
-            }
-            [positions(&corners, 0), positions(&corners, 1), positions(&corners, 2)]
-        };
-        Self { origin: p[0], edge1: p[1] - p[0], edge2: p[2] - p[0], corners, same }
-    }
+/// The triangles of eight fragments: all numbers of one corner, and how they change along the two
+/// edges from it.
+struct Triangles<const AVX2: bool> {
+    origin: [F32x8<AVX2>; LANES],
+    edge1: [F32x8<AVX2>; LANES],
+    edge2: [F32x8<AVX2>; LANES],
+}
 
-    /// All eight numbers of the vertices, interpolated.
+impl<const AVX2: bool> Triangles<AVX2> {
     #[inline(always)]
-    fn interpolate(&self, weights: [F32x8<AVX2>; 3]) -> [F32x8<AVX2>; LANES] {
-        let mut out = [F32x8::ZERO; LANES];
-        if self.same {
-            let [a, b, c] = self.corners[0];
-            for k in Vertex::U..LANES {
-                out[k] = weights[0] * F32x8::splat(a.0[k])
-                    + weights[1] * F32x8::splat(b.0[k])
-                    + weights[2] * F32x8::splat(c.0[k]);
-            }
-        } else {
-            for lane in 0..LANES {
-                let [a, b, c] = self.corners[lane];
-                let mixed = F32x8::<AVX2>(a.0) * F32x8::splat(weights[0].0[lane])
-                    + F32x8(b.0) * F32x8::splat(weights[1].0[lane])
-                    + F32x8(c.0) * F32x8::splat(weights[2].0[lane]);
-                for k in Vertex::U..LANES {
-                    out[k].0[lane] = mixed.0[k];
+    fn new(geometry: &Geometry<'_>, ids: &[u32; LANES]) -> Self {
+        let mut corners = [[F32x8::ZERO; LANES]; 3];
+        if ids.iter().fold(0, |differ, id| differ | (id ^ ids[0])) == 0 {
+            for (corner, vertex) in corners.iter_mut().zip(geometry.corners(ids[0])) {
+                for k in 0..LANES {
+                    corner[k] = F32x8::splat(vertex.0[k]);
                 }
             }
+        } else {
+            let mut rows = [[[0.0; LANES]; LANES]; 3];
+            for lane in 0..LANES {
+                let [a, b, c] = geometry.corners(ids[lane]);
+                (rows[0][lane], rows[1][lane], rows[2][lane]) = (a.0, b.0, c.0);
+            }
+            corners = [transposed(rows[0]), transposed(rows[1]), transposed(rows[2])];
+        }
+        let [origin, second, third] = corners;
+        let (mut edge1, mut edge2) = ([F32x8::ZERO; LANES], [F32x8::ZERO; LANES]);
+        for k in 0..LANES {
+            edge1[k] = second[k] - origin[k];
+            edge2[k] = third[k] - origin[k];
+        }
+        Self { origin, edge1, edge2 }
+    }
+
+    /// Some of the eight numbers of the vertices, interpolated.
+    #[inline(always)]
+    fn interpolate<const N: usize>(&self, at: [usize; N], w: [F32x8<AVX2>; 2]) -> [F32x8<AVX2>; N] {
+        let mut out = [F32x8::ZERO; N];
+        for (out, k) in out.iter_mut().zip(at) {
+            *out = self.origin[k] + self.edge1[k] * w[0] + self.edge2[k] * w[1];
         }
         out
     }
-
-    /// Differences of texture coordinates along both edges.
-    #[inline(always)]
-    fn texture_edges(&self) -> [[F32x8<AVX2>; 2]; 2] {
-        let mut d = [[F32x8::ZERO; 2]; 2];
-        for lane in 0..LANES {
-            let [a, b, c] = self.corners[lane];
-            d[0][0].0[lane] = b.0[Vertex::U] - a.0[Vertex::U];
-            d[0][1].0[lane] = b.0[Vertex::V] - a.0[Vertex::V];
-            d[1][0].0[lane] = c.0[Vertex::U] - a.0[Vertex::U];
-            d[1][1].0[lane] = c.0[Vertex::V] - a.0[Vertex::V];
-        }
-        d
-    }
 }
 
-/// Positions of one corner of eight triangles.
+/// Three numbers of vertices as a vector.
 #[inline(always)]
-fn positions<const AVX2: bool>(corners: &[[&Vertex; 3]; LANES], corner: usize) -> Vec3x8<AVX2> {
-    let mut p = Vec3x8::ZERO;
-    for lane in 0..LANES {
-        let [x, y, z] = corners[lane][corner].position();
-        (p.x.0[lane], p.y.0[lane], p.z.0[lane]) = (x, y, z);
-    }
-    p
+fn vector<const AVX2: bool>(from: &[F32x8<AVX2>; LANES], first: usize) -> Vec3x8<AVX2> {
+    Vec3x8::new(from[first], from[first + 1], from[first + 2])
 }
 
-/// Finds the surface under eight fragments.
+/// Finds the surface under eight fragments; `textured` as in [`Textured`].
 #[inline(always)]
 pub(super) fn points<const AVX2: bool>(
     geometry: &Geometry<'_>,
     rays: &Rays,
-    fragments: &[Fragment],
-    textured: bool,
+    ids: &[u32; LANES],
+    [x, y]: [F32x8<AVX2>; 2],
+    textured: Textured,
 ) -> Points<AVX2> {
-    let fragments = &fragments[..LANES];
-    let (mut x, mut y) = (F32x8::ZERO, F32x8::ZERO);
-    for lane in 0..LANES {
-        (x.0[lane], y.0[lane]) = (fragments[lane].x, fragments[lane].y);
-    }
     let ray = Vec3x8::new(
         (x - F32x8::splat(rays.center[0])) * F32x8::splat(rays.step[0]),
         (y - F32x8::splat(rays.center[1])) * F32x8::splat(rays.step[1]),
         F32x8::splat(-1.0),
     );
-    let triangles = Triangles::new(geometry, fragments);
-    let (origin, edge1, edge2) = (triangles.origin, triangles.edge1, triangles.edge2);
+    let triangles = Triangles::new(geometry, ids);
+    let origin = vector(&triangles.origin, 0);
+    let (edge1, edge2) = (vector(&triangles.edge1, 0), vector(&triangles.edge2, 0));
 
     // From the first corner to where the ray is as deep as it: short, so that little cancels.
     let to_ray =
@@ -184,73 +167,81 @@ pub(super) fn points<const AVX2: bool>(
     let raw2 = ray.dot(to_ray.cross(edge1)) * inverse;
     let weights = clamp_to_triangle(raw1, raw2);
 
-    let mixed = triangles.interpolate(weights);
-    let position = origin + edge1.scale(weights[1]) + edge2.scale(weights[2]);
     let n = Vertex::NORMAL;
-    let normal = Vec3x8::new(mixed[n], mixed[n + 1], mixed[n + 2]).normalized();
+    let [px, py, pz, nx, ny, nz, u, v] =
+        triangles.interpolate([0, 1, 2, n, n + 1, n + 2, Vertex::U, Vertex::V], weights);
+    let normal = Vec3x8::new(nx, ny, nz).normalized();
     let back = F32x8::ZERO.gt(determinant);
-    let texture = if textured {
-        let uv = [mixed[Vertex::U], mixed[Vertex::V]];
-        Some(texture_points(&triangles, rays, [raw1, raw2], inverse, uv))
-    } else {
-        None
-    };
-    Points { position, normal, back, texture }
+    let mut texture = TexturePoints::ZERO;
+    if textured.coordinates {
+        texture.uv = [u, v];
+        let change = barycentric_change([origin, edge1, edge2], rays, [raw1, raw2], inverse);
+        change_uv(&triangles, change, &mut texture);
+        if textured.directions {
+            tangents(&triangles, &mut texture);
+        }
+    }
+    Points { position: Vec3x8::new(px, py, pz), normal, back, texture }
 }
 
-/// How texture coordinates change over a pixel, and in which directions they grow.
+/// What of [`TexturePoints`] is wanted.
+#[derive(Clone, Copy)]
+pub(super) struct Textured {
+    /// Coordinates and their change.
+    pub(super) coordinates: bool,
+    /// Tangents.
+    pub(super) directions: bool,
+}
+
+/// How texture coordinates change over a pixel.
 #[inline(always)]
-fn texture_points<const AVX2: bool>(
-    triangles: &Triangles<'_, AVX2>,
-    rays: &Rays,
-    barycentric: [F32x8<AVX2>; 2],
-    inverse: F32x8<AVX2>,
-    uv: [F32x8<AVX2>; 2],
-) -> TexturePoints<AVX2> {
-    let [along1, along2] = triangles.texture_edges();
-    let [change1, change2] = barycentric_change(triangles, rays, barycentric, inverse);
+fn change_uv<const AVX2: bool>(
+    t: &Triangles<AVX2>,
+    [change1, change2]: [[F32x8<AVX2>; 2]; 2],
+    out: &mut TexturePoints<AVX2>,
+) {
+    for (i, k) in [Vertex::U, Vertex::V].into_iter().enumerate() {
+        out.d_dx[i] = change1[0] * t.edge1[k] + change2[0] * t.edge2[k];
+        out.d_dy[i] = change1[1] * t.edge1[k] + change2[1] * t.edge2[k];
+    }
+}
+
+/// In which directions texture coordinates grow.
+#[inline(always)]
+fn tangents<const AVX2: bool>(t: &Triangles<AVX2>, out: &mut TexturePoints<AVX2>) {
+    let (edge1, edge2) = (vector(&t.edge1, 0), vector(&t.edge2, 0));
+    let along1 = [t.edge1[Vertex::U], t.edge1[Vertex::V]];
+    let along2 = [t.edge2[Vertex::U], t.edge2[Vertex::V]];
     // Solves edge_k = u_k tangent + v_k bitangent; the sign of the area is all that is kept of the
     // denominator, lengths do not matter.
     let area = along1[0] * along2[1] - along1[1] * along2[0];
     let sign = area.ge(F32x8::ZERO).select(F32x8::ONE, F32x8::splat(-1.0));
-    let tangent = triangles.edge1.scale(along2[1]) - triangles.edge2.scale(along1[1]);
-    let bitangent = triangles.edge2.scale(along1[0]) - triangles.edge1.scale(along2[0]);
-    TexturePoints {
-        uv,
-        d_dx: [
-            change1[0] * along1[0] + change2[0] * along2[0],
-            change1[0] * along1[1] + change2[0] * along2[1],
-        ],
-        d_dy: [
-            change1[1] * along1[0] + change2[1] * along2[0],
-            change1[1] * along1[1] + change2[1] * along2[1],
-        ],
-        tangent: tangent.scale(sign),
-        bitangent: bitangent.scale(sign),
-    }
+    out.tangent = (edge1.scale(along2[1]) - edge2.scale(along1[1])).scale(sign);
+    out.bitangent = (edge2.scale(along1[0]) - edge1.scale(along2[0])).scale(sign);
 }
 
-/// Weights of the three corners, none negative and of sum 1, from two of them.
+/// Weights of the second and third corner, such that those of all three are not negative and of
+/// sum 1.
 #[inline(always)]
-fn clamp_to_triangle<const AVX2: bool>(w1: F32x8<AVX2>, w2: F32x8<AVX2>) -> [F32x8<AVX2>; 3] {
+fn clamp_to_triangle<const AVX2: bool>(w1: F32x8<AVX2>, w2: F32x8<AVX2>) -> [F32x8<AVX2>; 2] {
     let zero = F32x8::ZERO;
     let (w1, w2) = (w1.max(zero), w2.max(zero));
     let w0 = (F32x8::ONE - w1 - w2).max(zero);
     let inverse = F32x8::ONE / (w0 + w1 + w2);
-    [w0 * inverse, w1 * inverse, w2 * inverse]
+    [w1 * inverse, w2 * inverse]
 }
 
 /// Change of the second and third barycentric coordinate over a pixel to the right and a pixel
 /// down: numerators and determinant are linear in the ray.
 #[inline(always)]
 fn barycentric_change<const AVX2: bool>(
-    t: &Triangles<'_, AVX2>,
+    [origin, edge1, edge2]: [Vec3x8<AVX2>; 3],
     rays: &Rays,
     at: [F32x8<AVX2>; 2],
     inverse: F32x8<AVX2>,
 ) -> [[F32x8<AVX2>; 2]; 2] {
-    let numerators = [t.origin.cross(t.edge2), t.edge1.cross(t.origin)];
-    let determinant = t.edge2.cross(t.edge1);
+    let numerators = [origin.cross(edge2), edge1.cross(origin)];
+    let determinant = edge2.cross(edge1);
     let mut change = [[F32x8::ZERO; 2]; 2];
     for k in 0..2 {
         let x = (numerators[k].x - at[k] * determinant.x) * inverse;

@@ -5,28 +5,18 @@
 use crate::engine::cpu::simd::{F32x8, I32x8};
 use crate::library::texture::{Encoding, Texture};
 
-/// Mip levels of the largest texture that is accepted, and some to spare.
-const LEVELS: usize = 16;
-
 /// A texture ready for look-ups.
 #[derive(Clone, Copy)]
 pub(super) struct Sampler<'a> {
     texels: &'a [u32],
-    /// First texel of each level.
-    level_start: [u32; LEVELS],
     log2_size: i32,
     srgb: bool,
 }
 
 impl<'a> Sampler<'a> {
     pub(super) fn new(texture: &'a Texture) -> Self {
-        let mut level_start = [0; LEVELS];
-        for level in 0..=texture.log2_size {
-            level_start[level as usize] = Texture::level_offset(texture.log2_size, level) as u32;
-        }
         Self {
             texels: &texture.texels,
-            level_start,
             log2_size: texture.log2_size as i32,
             srgb: texture.encoding == Encoding::Srgb,
         }
@@ -45,80 +35,114 @@ impl<'a> Sampler<'a> {
         let level = (footprint + F32x8::splat(top)).clamp(0.0, top);
         let lower = level.floor();
         let between = level - lower;
-        let level = lower.round_i32();
-        let mut out = self.bilinear::<AVX2, C>(uv, level);
-        if between.gt(F32x8::ZERO).any() {
-            // Beyond the last level there is nothing to mix in, and the mask keeps it in bounds.
-            let coarse = self.bilinear::<AVX2, C>(uv, level + I32x8::splat(1));
-            for c in 0..C {
-                out[c] = out[c].mix(coarse[c], between);
+        let mut level = lower.round_i32();
+        let mut out = [F32x8::ZERO; C];
+        // Beyond the last level there is nothing to mix in.
+        for share in [F32x8::ONE - between, between] {
+            if share.gt(F32x8::ZERO).any() {
+                if self.srgb {
+                    self.add_bilinear::<AVX2, C, true>(uv, level, share, &mut out);
+                } else {
+                    self.add_bilinear::<AVX2, C, false>(uv, level, share, &mut out);
+                }
             }
+            level = level + I32x8::splat(1);
+        }
+        let unit = F32x8::splat(if self.srgb { SRGB_UNIT } else { 1.0 / 255.0 });
+        for c in 0..C {
+            out[c] = out[c] * unit;
         }
         out
     }
 
-    /// Mixes the four texels round a point of one level.
+    /// Adds a share of the mean of the four texels round a point of one level, in units of the
+    /// decoding.
     #[inline(always)]
-    fn bilinear<const AVX2: bool, const C: usize>(
+    fn add_bilinear<const AVX2: bool, const C: usize, const SRGB: bool>(
         &self,
         uv: [F32x8<AVX2>; 2],
         level: I32x8<AVX2>,
-    ) -> [F32x8<AVX2>; C] {
+        share: F32x8<AVX2>,
+        out: &mut [F32x8<AVX2>; C],
+    ) {
         let one = I32x8::splat(1);
         let log2_side = I32x8::splat(self.log2_size) - level;
         let side = one.shl_each(log2_side);
-        let last = side - one;
         let half = F32x8::splat(0.5);
         let (x, y) = (uv[0] * side.to_f32() - half, uv[1] * side.to_f32() - half);
         let (left, top) = (x.floor(), y.floor());
         let (wx, wy) = (x - left, y - top);
-        let (left, top) = (left.round_i32(), top.round_i32());
-        let start = level.gather_u32(&self.level_start);
-        let columns = [left & last, (left + one) & last];
-        let rows = [
-            start + (top & last).shl_each(log2_side),
-            start + ((top + one) & last).shl_each(log2_side),
-        ];
-        let corners = [
-            self.fetch::<AVX2, C>(rows[0] + columns[0]),
-            self.fetch::<AVX2, C>(rows[0] + columns[1]),
-            self.fetch::<AVX2, C>(rows[1] + columns[0]),
-            self.fetch::<AVX2, C>(rows[1] + columns[1]),
-        ];
-        let mut out = [F32x8::ZERO; C];
-        for c in 0..C {
-            let upper = corners[0][c].mix(corners[1][c], wx);
-            out[c] = upper.mix(corners[2][c].mix(corners[3][c], wx), wy);
+        let (right, lower) = (wx * share, wy * share);
+        let lower_right = right * wy;
+        let (upper_right, lower_left) = (right - lower_right, lower - lower_right);
+        let weights = [share - right - lower_left, upper_right, lower_left, lower_right];
+        let texels = self.corners(log2_side, [left.round_i32(), top.round_i32()]);
+        for (texels, weight) in texels.into_iter().zip(weights) {
+            for c in 0..C {
+                let byte = ((texels >> (8 * c as u32)) & I32x8::splat(255)).to_f32();
+                let value = if SRGB { decode_srgb(byte) } else { byte };
+                out[c] = out[c] + value * weight;
+            }
         }
-        out
     }
 
-    /// Decoded channels of eight texels.
+    /// First texel of levels, as [`Texture::level_offset`] has it.
     #[inline(always)]
-    fn fetch<const AVX2: bool, const C: usize>(&self, index: I32x8<AVX2>) -> [F32x8<AVX2>; C] {
-        let texels = index.gather_u32(self.texels);
-        let mut out = [F32x8::ZERO; C];
-        for c in 0..C {
-            let byte = ((texels >> (8 * c as u32)) & I32x8::splat(255)).to_f32();
-            out[c] = if self.srgb { decode_srgb(byte) } else { byte * F32x8::splat(1.0 / 255.0) };
+    fn level_start<const AVX2: bool>(&self, log2_side: I32x8<AVX2>) -> I32x8<AVX2> {
+        /// Divides multiples of 3, modulo 2^32.
+        const THIRD: i32 = 0xaaaa_aaab_u32 as i32;
+        let all = I32x8::splat(4 << (2 * self.log2_size));
+        (all - I32x8::splat(4).shl_each(log2_side + log2_side)) * I32x8::splat(THIRD)
+    }
+
+    /// The texels at a column and a row, to the right of it, below it, and below to the right;
+    /// any texel beyond the last level.
+    #[inline(always)]
+    fn corners<const AVX2: bool>(
+        &self,
+        log2_side: I32x8<AVX2>,
+        [left, top]: [I32x8<AVX2>; 2],
+    ) -> [I32x8<AVX2>; 4] {
+        let one = I32x8::splat(1);
+        let last = one.shl_each(log2_side) - one;
+        let start = self.level_start(log2_side);
+        let left = left & last;
+        let upper = start + (top & last).shl_each(log2_side);
+        let lower = start + ((top + one) & last).shl_each(log2_side);
+        if left.gt(last - one).any() {
+            // Right of the last column comes the first.
+            let right = (left + one) & last;
+            return [
+                (upper + left).gather_u32(self.texels),
+                (upper + right).gather_u32(self.texels),
+                (lower + left).gather_u32(self.texels),
+                (lower + right).gather_u32(self.texels),
+            ];
         }
-        out
+        let [upper_left, upper_right] = (upper + left).gather_pairs(self.texels);
+        let [lower_left, lower_right] = (lower + left).gather_pairs(self.texels);
+        [upper_left, upper_right, lower_left, lower_right]
     }
 }
 
-/// sRGB bytes 0..255 to linear light 0..1 (IEC 61966-2-1), within a twentieth of a step of 255:
-/// the linear toe, and above it a polynomial fitted for the least largest error after encoding.
+/// What [`decode_srgb`] gives numbers in: the polynomial's highest coefficient, which spares a
+/// multiplication.
+const SRGB_UNIT: f32 = -0.115_389_27 / (255.0 * 255.0 * 255.0 * 255.0);
+
+/// sRGB bytes 0..255 to linear light 0..1 (IEC 61966-2-1) in [`SRGB_UNIT`], within a twentieth of
+/// a step of 255: the linear toe, and above it a polynomial fitted for the least largest error
+/// after encoding.
 #[inline(always)]
 fn decode_srgb<const AVX2: bool>(byte: F32x8<AVX2>) -> F32x8<AVX2> {
     const TOE_END: f32 = 0.040_45 * 255.0;
-    const C1: f32 = 0.028_079_284 / 255.0;
-    const C2: f32 = 0.561_964_45 / (255.0 * 255.0);
-    const C3: f32 = 0.523_844 / (255.0 * 255.0 * 255.0);
-    const C4: f32 = -0.115_389_27 / (255.0 * 255.0 * 255.0 * 255.0);
+    const TOE: f32 = 1.0 / (255.0 * 12.92) / SRGB_UNIT;
+    const C0: f32 = 0.001_063_661_8 / SRGB_UNIT;
+    const C1: f32 = 0.028_079_284 / 255.0 / SRGB_UNIT;
+    const C2: f32 = 0.561_964_45 / (255.0 * 255.0) / SRGB_UNIT;
+    const C3: f32 = 0.523_844 / (255.0 * 255.0 * 255.0) / SRGB_UNIT;
     let s = F32x8::splat;
-    let curve =
-        (((byte * s(C4) + s(C3)) * byte + s(C2)) * byte + s(C1)) * byte + s(0.001_063_661_8);
-    byte.gt(s(TOE_END)).select(curve, byte * s(1.0 / (255.0 * 12.92)))
+    let curve = (((byte + s(C3)) * byte + s(C2)) * byte + s(C1)) * byte + s(C0);
+    byte.gt(s(TOE_END)).select(curve, byte * s(TOE))
 }
 
 /// log2 of a pixel's size in texture coordinates, from the change of (u, v) over one pixel to the
@@ -160,9 +184,22 @@ mod tests {
     #[test]
     fn every_srgb_byte_is_decoded_to_a_twentieth_of_a_step() {
         for byte in 0..256 {
-            let linear = decode_srgb(F32x8::<false>::splat(byte as f32)).0[0];
+            let linear = decode_srgb(F32x8::<false>::splat(byte as f32)).0[0] * SRGB_UNIT;
             let back = srgb_from_linear(linear) * 255.0;
             assert!((back - byte as f32).abs() < 0.055, "{byte} becomes {back}");
+        }
+    }
+
+    #[test]
+    fn levels_start_where_textures_put_them() {
+        for log2_size in 0..14 {
+            let texture = Texture { log2_size, encoding: Encoding::Linear, texels: vec![0] };
+            let sampler = Sampler::new(&texture);
+            for level in 0..=log2_size {
+                let log2_side = I32x8::<false>::splat((log2_size - level) as i32);
+                let start = sampler.level_start(log2_side).0[0] as usize;
+                assert_eq!(start, Texture::level_offset(log2_size, level));
+            }
         }
     }
 
