@@ -89,7 +89,7 @@ pub enum ImageFormat {
 #[serde(default, deny_unknown_fields)]
 pub struct Quality {
     /// Largest side of the sun's shadow map in texels, a multiple of 64. It is smaller where texels
-    /// would be finer than half a pixel.
+    /// would be finer than a pixel.
     pub shadow_map_size: u32,
     /// How far a simplified mesh may stray from the full one, pixels.
     pub lod_error_px: f64,

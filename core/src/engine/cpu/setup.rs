@@ -143,7 +143,9 @@ pub(super) fn cull(chunk: &Chunk, v: &[ScreenVertex; 3], target: &Target<'_>) ->
     if px0 > px1 || py0 > py1 {
         return None;
     }
-    let nearest = v[0].depth.max(v[1].depth).max(v[2].depth);
+    // Plain comparisons: depths are numbers, and the standard functions look for those that are not.
+    let nearer = |a: f32, b: f32| if a > b { a } else { b };
+    let nearest = nearer(nearer(v[0].depth, v[1].depth), v[2].depth);
     Some(Triangle {
         x,
         y,
@@ -164,7 +166,8 @@ fn plane(v: &[ScreenVertex; 3]) -> DepthPlane {
     let (ux, uy, uz) = (x1 - x0, y1 - y0, z1 - z0);
     let (wx, wy, wz) = (x2 - x0, y2 - y0, z2 - z0);
     let area = ux * wy - uy * wx;
-    let reach = ux.abs().max(uy.abs()).max(wx.abs()).max(wy.abs());
+    let farther = |a: f64, b: f64| if a > b { a } else { b };
+    let reach = farther(farther(ux.abs(), uy.abs()), farther(wx.abs(), wy.abs()));
     let (dx, dy) = if area.abs() < SLIVER * reach {
         along_longest_edge([[ux, uy, uz], [wx, wy, wz], [wx - ux, wy - uy, wz - uz]])
     } else {

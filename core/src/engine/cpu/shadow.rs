@@ -1,11 +1,10 @@
 //! Shadow: depth seen from the sun, and how much of its light reaches a point.
 //!
 //! A parallel projection is fitted to where the visible surfaces and the shadows that can fall on
-//! them meet, with texels no finer than half a pixel; casters are drawn whatever their distance
-//! towards the sun. Single-sided triangles
-//! cast where their front faces the sun. Look-ups filter four texels bilinearly (percentage-closer
-//! filtering, Reeves et al. 1987) and are moved off the surface along its normal (Holbert, "Saying
-//! goodbye to shadow acne", GDC 2011).
+//! them meet, with texels no finer than a pixel; casters are drawn whatever their distance towards
+//! the sun. Single-sided triangles cast where their front faces the sun. Look-ups filter four texels
+//! bilinearly (percentage-closer filtering, Reeves et al. 1987) and are moved off the surface along
+//! its normal (Holbert, "Saying goodbye to shadow acne", GDC 2011).
 
 use rayon::prelude::*;
 
@@ -165,7 +164,7 @@ pub(super) struct ShadowView {
 
 impl ShadowView {
     /// Fits a map of at most `largest` texels a side; nothing if no shadow can be seen. Texels are
-    /// no finer than half a pixel at the nearest receiver, as nobody would see it.
+    /// no finer than a pixel at the nearest receiver, which is half a pixel at twice its distance.
     pub(super) fn fit(
         axes: &SunAxes,
         casters: &Bounds,
@@ -176,7 +175,7 @@ impl ShadowView {
         let mut low = [0.0; 2];
         let mut scale = [0.0; 2];
         let mut size = [0; 2];
-        let half_px_m = 0.5 * f64::from(receivers.nearest_m / focal_px);
+        let pixel_m = f64::from(receivers.nearest_m / focal_px);
         for axis in 0..2 {
             low[axis] = f64::from(casters.min[axis].max(receivers.min[axis]));
             let high = f64::from(casters.max[axis].min(receivers.max[axis]));
@@ -184,7 +183,7 @@ impl ShadowView {
                 return None;
             }
             let extent_m = (high - low[axis]).max(1e-3);
-            let texels = (extent_m / half_px_m + 2.0 * MARGIN).min(f64::from(largest));
+            let texels = (extent_m / pixel_m + 2.0 * MARGIN).min(f64::from(largest));
             size[axis] = (texels.ceil() as u32).next_multiple_of(TILE as u32).min(largest);
             scale[axis] = (f64::from(size[axis]) - 2.0 * MARGIN) / extent_m;
         }

@@ -74,14 +74,14 @@ impl Field {
             let blend = fade(v);
             let upper = &gradients[cell * columns..][..columns];
             let lower = &gradients[(cell + 1) % rows * columns..][..columns];
-            for (i, line) in lines.iter_mut().enumerate() {
-                let (a, b) = (upper[i % columns], lower[i % columns]);
+            for ((line, a), b) in lines.iter_mut().zip(upper).zip(lower) {
                 let (ya, yb) = (a[1] * v, b[1] * (v - 1.0));
                 *line = [
                     amplitude * (ya + (yb - ya) * blend),
                     amplitude * (a[0] + (b[0] - a[0]) * blend),
                 ];
             }
+            lines[columns] = lines[0];
             let row = &mut self.0[y * SIDE..][..SIDE];
             for (ends, corners) in starts.windows(2).zip(lines.windows(2)) {
                 let ([a0, b0], [a1, b1]) = (corners[0], corners[1]);
