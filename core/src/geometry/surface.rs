@@ -139,11 +139,17 @@ fn eye_surface(look: &Look) -> Surface {
 }
 
 fn hair_surface(look: &Look) -> Surface {
+    // Tight curls scatter what long strands reflect.
+    let roughness = match look.hair {
+        HairStyle::Afro | HairStyle::Cropped | HairStyle::Bald => 0.92,
+        HairStyle::Short => 0.78,
+        HairStyle::Long => 0.66,
+    };
     Surface {
         detail: Detail::Hair,
-        detail_strength: 0.45,
+        detail_strength: 0.6,
         wrap: 0.10,
-        ..plain(narrow(look.hair_color), 0.50)
+        ..plain(narrow(look.hair_color), roughness)
     }
 }
 
