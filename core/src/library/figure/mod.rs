@@ -241,7 +241,9 @@ impl Figure {
             .map(|(&v, &w)| (usize::from(v), w))
     }
 
-    /// Geometric error of a level of detail, metres on the template; 0 for the finest.
+    /// Geometric error of a level of detail, metres on the template; 0 for the finest. No vertex of
+    /// the finest level lies farther from the level's surface; where the finest surface folds,
+    /// points between its vertices may, by less than twice as much.
     #[must_use]
     pub fn lod_error_m(&self, lod: usize) -> f32 {
         self.group(GroupId::Skin).lods[lod]
