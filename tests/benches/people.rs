@@ -10,10 +10,10 @@ use std::time::Instant;
 use figurant_core::document::{file, presets};
 use figurant_core::geometry::body::rest_body;
 use figurant_core::geometry::person::dress;
+use figurant_core::job::catalogue;
 use figurant_core::library::Library;
 use figurant_core::library::figure::LOD_COUNT;
-use figurant_core::library::textures::TextureGroup;
-use figurant_core::sampling::{Catalogue, Sampler};
+use figurant_core::sampling::Sampler;
 
 fn main() {
     let words: Vec<String> = std::env::args().skip(1).filter(|a| !a.starts_with('-')).collect();
@@ -26,13 +26,7 @@ fn main() {
     let mut document = file::parse(preset.text).expect("presets are valid");
     document.people.identities = None;
     let library = Library::new(&[], 1024).expect("built-in assets load");
-    let catalogue = Catalogue {
-        face_targets: library.figure.face_shape_names().map(str::to_owned).collect(),
-        clips: library.clips.ids().map(str::to_owned).collect(),
-        textures: library.surface_textures(),
-        cloth_patterns: library.textures.ids(TextureGroup::Cloth).to_vec(),
-    };
-    let sampler = Sampler::new(Arc::new(document), catalogue).expect("presets are valid");
+    let sampler = Sampler::new(Arc::new(document), catalogue(&library)).expect("presets are valid");
     let people: Vec<_> = (0..frames).flat_map(|frame| sampler.scene(frame).people).collect();
     let count = people.len() as f64;
     println!("{} people of {name}", people.len());

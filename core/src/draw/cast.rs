@@ -14,7 +14,7 @@ use crate::scene::Person;
 
 /// About 300 people at two levels of detail each.
 const MESHES_BYTES: usize = 256 << 20;
-/// Some 1,600 people.
+/// Some 1,500 people.
 const BODIES_BYTES: usize = 32 << 20;
 
 /// People by what their meshes depend on; shared between threads.

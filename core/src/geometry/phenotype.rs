@@ -225,6 +225,20 @@ pub(crate) mod tests {
     }
 
     #[test]
+    fn deltas_add_up_to_the_same_bits_with_any_instruction_set() {
+        let deltas: Vec<i16> = (0..259).map(|i| (i * 7919 % 65_521 - 32_760) as i16).collect();
+        let sums: Vec<f32> = (0..259).map(|i| 0.37 / (i as f32 + 0.3)).collect();
+        type Add = fn([&mut [f32]; 3], [&[i16]; 3], f32);
+        let run = |add: Add| {
+            let mut out = [sums.clone(), sums.clone(), sums.clone()];
+            let [x, y, z] = &mut out;
+            add([x, y, z], [&deltas, &deltas[1..], &deltas[2..]], 0.000_123_4);
+            out.map(|axis| axis.into_iter().map(f32::to_bits).collect::<Vec<_>>())
+        };
+        assert_eq!(run(add_deltas), run(add_deltas_body));
+    }
+
+    #[test]
     fn ages_map_through_their_anchors() {
         for (years, slider) in
             [(1.0, 0.05), (4.0, 0.215), (18.0, 0.77), (64.0, 0.83), (2.5, 0.1325)]

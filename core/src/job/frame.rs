@@ -113,7 +113,9 @@ impl Studio {
     }
 }
 
-fn catalogue(library: &Library) -> Catalogue {
+/// The names of what a library holds.
+#[must_use]
+pub fn catalogue(library: &Library) -> Catalogue {
     Catalogue {
         face_targets: library.figure.face_shape_names().map(str::to_owned).collect(),
         clips: library.clips.ids().map(str::to_owned).collect(),
