@@ -176,7 +176,7 @@ impl Buffers {
                 sun: axes.as_ref(),
                 ..Target::picture::<S>(&placed.vertices, &placed.screen, &projection)
             };
-            set_up_all(chunks, list, &target);
+            set_up_all(level, chunks, list, &target);
             self.visible.sort_by_tile(projection.size, target.tile_log2);
             Ok(())
         })?;
@@ -201,20 +201,22 @@ impl Buffers {
         if size == 0 {
             return Ok(None);
         }
-        let view = times.measure("shadow fit", || {
-            let [casters, receivers] = self.bounds(level, list, axes, [seen, casts]);
+        let (view, casts) = times.measure("shadow fit", || {
+            let (casters, receivers) = self.bounds(level, list, axes, [seen, casts]);
+            let reaches: Vec<bool> = casters.iter().map(|c| c.may_shade(&receivers)).collect();
+            let casting = casters.iter().zip(&reaches).filter(|(_, reaches)| **reaches);
+            let casters = casting.fold(Bounds::EMPTY, |all, (caster, _)| all.join(caster));
             let focal_px = list.view.fx.max(list.view.fy);
-            ShadowView::fit(axes, &casters, &receivers, size, focal_px)
+            (ShadowView::fit(axes, &casters, &receivers, size, focal_px), reaches)
         });
         let Some(view) = view else { return Ok(None) };
         times.measure("shadow setup", || {
-            let vertices = &self.placed.vertices;
-            self.sun_screen.resize(vertices.len(), ScreenVertex::default());
-            let batches = vertices.par_chunks(4096).zip(self.sun_screen.par_chunks_mut(4096));
-            batches.for_each(|(from, to)| project::project_all(level, from, &view.projection, to));
-            self.casting.fill(list, &self.placed, casts)?;
-            let target = Target::shadow(vertices, &self.sun_screen, &view.projection);
-            set_up_all(self.casting.as_mut_slice(), list, &target);
+            let placed = &self.placed;
+            self.sun_screen.resize(placed.vertices.len(), ScreenVertex::default());
+            project_objects(level, placed, &view.projection, &casts, &mut self.sun_screen);
+            self.casting.fill(list, placed, &casts)?;
+            let target = Target::shadow(&placed.vertices, &self.sun_screen, &view.projection);
+            set_up_all(level, self.casting.as_mut_slice(), list, &target);
             self.casting.sort_by_tile(view.projection.size, target.tile_log2);
             Ok(())
         })?;
@@ -224,34 +226,31 @@ impl Buffers {
         Ok(Some(view))
     }
 
-    /// Bounds, along the sun's axes, of what casts shadows and of what is seen.
+    /// Bounds, along the sun's axes, of each object that casts shadows (of none where it does not)
+    /// and of what is seen.
     fn bounds(
         &self,
         level: Level,
         list: &DrawList,
         axes: &SunAxes,
         [seen, casts]: [&[bool]; 2],
-    ) -> [Bounds; 2] {
+    ) -> (Vec<Bounds>, Bounds) {
         let size = [list.view.width, list.view.height];
         let placed = &self.placed;
         let of_object = |object: usize| {
             let span = placed.first_vertex[object]..placed.first_vertex[object + 1];
             let (vertices, screen) = (&placed.vertices[span.clone()], &placed.screen[span]);
             let (all, visible) = shadow::bound_vertices(level, vertices, screen, size, axes);
-            [
+            (
                 if casts[object] { all } else { Bounds::EMPTY },
                 if seen[object] { visible } else { Bounds::EMPTY },
-            ]
+            )
         };
-        let empty = || [Bounds::EMPTY; 2];
-        let [casters, mut receivers] = (0..list.objects.len())
-            .into_par_iter()
-            .map(of_object)
-            .reduce(empty, |a, b| [a[0].join(&b[0]), a[1].join(&b[1])]);
-        for chunk in self.visible.as_slice() {
-            receivers = receivers.join(&chunk.border_bounds);
-        }
-        [casters, receivers]
+        let (casters, visible): (Vec<_>, Vec<_>) =
+            (0..list.objects.len()).into_par_iter().map(of_object).unzip();
+        let borders = self.visible.as_slice().iter().map(|chunk| &chunk.border_bounds);
+        let receivers = visible.iter().chain(borders).fold(Bounds::EMPTY, |all, b| all.join(b));
+        (casters, receivers)
     }
 
     /// Runs the passes that go tile by tile and fills the frame.
@@ -305,11 +304,34 @@ impl Buffers {
     }
 }
 
+/// Projects the vertices of the wanted objects; the others' places keep what they held.
+fn project_objects(
+    level: Level,
+    placed: &skin::Placed,
+    projection: &Projection,
+    wanted: &[bool],
+    out: &mut [ScreenVertex],
+) {
+    let mut batches = Vec::new();
+    let mut rest = out;
+    for (span, wanted) in placed.first_vertex.windows(2).zip(wanted) {
+        let (own, after) = rest.split_at_mut(span[1] - span[0]);
+        rest = after;
+        if *wanted {
+            let from = placed.vertices[span[0]..span[1]].chunks(4096);
+            batches.extend(from.zip(own.chunks_mut(4096)));
+        }
+    }
+    batches
+        .into_par_iter()
+        .for_each(|(from, to)| project::project_all(level, from, projection, to));
+}
+
 /// Sets up all chunks for a raster pass.
-fn set_up_all(chunks: &mut [Chunk], list: &DrawList, target: &Target<'_>) {
+fn set_up_all(level: Level, chunks: &mut [Chunk], list: &DrawList, target: &Target<'_>) {
     chunks.par_iter_mut().with_max_len(1).for_each(|chunk| {
         let mesh = &list.objects[chunk.object as usize].mesh;
-        setup::set_up(chunk, &mesh.triangles, target);
+        setup::set_up(level, chunk, &mesh.triangles, target);
     });
 }
 

@@ -7,6 +7,7 @@ use super::chunk::{Chunk, DepthPlane, Face, Triangle};
 use super::project::{Projection, SCREEN_BITS, ScreenVertex, Vertex};
 use super::samples::{Layout, RASTER_BITS, TILE};
 use super::shadow::SunAxes;
+use super::simd::kernel;
 use super::{clip, shadow};
 
 /// Triangles up to this size have edge functions below 2^31 all over a tile: with extent E and
@@ -63,8 +64,18 @@ impl<'a> Target<'a> {
     }
 }
 
-/// Culls, clips and bins the triangles of a chunk.
-pub(super) fn set_up(chunk: &mut Chunk, mesh_triangles: &[[u32; 3]], target: &Target<'_>) {
+kernel! {
+    /// Culls, clips and bins the triangles of a chunk.
+    fn set_up(chunk: &mut Chunk, mesh_triangles: &[[u32; 3]], target: &Target<'_>) = set_up_body
+}
+
+// Triangle by triangle, but the newer form's three-operand instructions spare a tenth.
+#[inline(always)]
+fn set_up_body<const AVX2: bool>(
+    chunk: &mut Chunk,
+    mesh_triangles: &[[u32; 3]],
+    target: &Target<'_>,
+) {
     chunk.triangles.clear();
     chunk.faces.clear();
     chunk.crossing.clear();

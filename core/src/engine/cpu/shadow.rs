@@ -82,6 +82,15 @@ impl Bounds {
         }
     }
 
+    /// Whether a shadow of what is in here can fall on what is in another box.
+    pub(super) fn may_shade(&self, receivers: &Self) -> bool {
+        let beside = (0..2).any(|axis| {
+            self.max[axis] < receivers.min[axis] || self.min[axis] > receivers.max[axis]
+        });
+        // Deeper than anything seen, it is in others' shadow and shades nothing.
+        !beside && self.max[2] >= receivers.min[2]
+    }
+
     /// Grows to hold another box.
     pub(super) fn join(&self, other: &Self) -> Self {
         Self {
