@@ -33,6 +33,8 @@ pub enum Command {
     Export(ExportArgs),
     /// Render one frame to a PNG file.
     Frame(FrameArgs),
+    /// Make a page of pictures from a list of configs.
+    Gallery(GalleryArgs),
     /// Check a config: every problem, with its field and a suggestion.
     Validate(ValidateArgs),
     /// Print the JSON Schema of the config.
@@ -94,6 +96,17 @@ pub struct FrameArgs {
     /// Labels to draw on the picture.
     #[arg(long, value_enum, value_delimiter = ',')]
     pub overlay: Vec<Overlay>,
+    #[command(flatten)]
+    pub changes: Changes,
+}
+
+#[derive(Debug, ClapArgs)]
+pub struct GalleryArgs {
+    /// The list: which frames of which configs, with headings and captions.
+    pub list: PathBuf,
+    /// Folder of the page and its pictures; made if it does not exist.
+    #[arg(long, value_name = "DIR")]
+    pub out: PathBuf,
     #[command(flatten)]
     pub changes: Changes,
 }

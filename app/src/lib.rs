@@ -39,6 +39,7 @@ pub fn run<R: Road>(
         None => commands::no_editor(parsed.config.as_deref(), console),
         Some(args::Command::Export(args)) => commands::export::run(road, &args, console, stop),
         Some(args::Command::Frame(args)) => commands::frame::run(road, &args, console),
+        Some(args::Command::Gallery(args)) => commands::gallery::run(road, &args, console),
         Some(args::Command::Validate(args)) => commands::validate::run(road, &args, console),
         Some(args::Command::Schema) => commands::schema::run(road, console),
         Some(args::Command::Doctor(args)) => commands::doctor::run(road, &args, console),

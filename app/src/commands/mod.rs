@@ -12,6 +12,7 @@ use crate::{Console, Exit, Failure};
 pub mod doctor;
 pub mod export;
 pub mod frame;
+pub mod gallery;
 pub mod schema;
 pub mod validate;
 

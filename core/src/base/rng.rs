@@ -61,7 +61,7 @@ impl Draws {
     /// The numbers of one quantity of one slot (a person, a light, an occluder).
     #[must_use]
     pub const fn of(self, key: Key, slot: u32) -> Draw {
-        Draw { draws: self, key, slot, lane: 0 }
+        Draw { draws: self, key, slot, turn: slot, lane: 0 }
     }
 }
 
@@ -71,6 +71,7 @@ pub struct Draw {
     draws: Draws,
     key: Key,
     slot: u32,
+    turn: u32,
     lane: u32,
 }
 
@@ -80,6 +81,19 @@ impl Draw {
     #[must_use]
     pub const fn lane(self, lane: u16) -> Self {
         Self { lane: lane as u32, ..self }
+    }
+
+    /// The same numbers for another place in a row; see [`Draw::turn`].
+    #[must_use]
+    pub const fn in_turn(self, turn: u32) -> Self {
+        Self { turn, ..self }
+    }
+
+    /// Whose turn it is where things are not drawn but taken one after the other: the slot's place,
+    /// whatever the numbers are keyed by.
+    #[must_use]
+    pub const fn turn(self) -> u32 {
+        self.turn
     }
 
     /// Whether it is the median that is asked for, see [`Draws::random_if`].

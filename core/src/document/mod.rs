@@ -35,7 +35,8 @@ pub use param::{
 };
 pub use people::{Ancestry, Body, Bottom, Look, Origin, People, Pose, Shoes, Top, Wardrobe};
 pub use place::{
-    Background, Floor, Grid, Ground, Materials, Occluders, Placement, PoissonDisk, Row, Wall,
+    Background, Floor, Grid, GridPlane, Ground, Materials, Occluders, Placement, PoissonDisk, Row,
+    Wall,
 };
 pub use validate::{MAX_OBJECTS, MAX_PEOPLE, validate};
 pub use vector::{

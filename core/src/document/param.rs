@@ -40,6 +40,9 @@ pub enum Distribution {
     Choice(Vec<(f64, f64)>),
     /// Piecewise-linear density through points `[x, density]`; it need not be normalised.
     Curve(Vec<(f64, f64)>),
+    /// Not drawn: the first value for the first slot of the frame, the second for the second, and
+    /// from the beginning again where they end.
+    Each(Vec<f64>),
     /// Weights and the parameters they stand for.
     Mix(Vec<(f64, Param)>),
 }
@@ -183,6 +186,7 @@ impl Param {
             Distribution::Choice(items) => {
                 hull(items.iter().filter(|i| i.1 > 0.0).map(|i| (i.0, i.0)))
             }
+            Distribution::Each(values) => hull(values.iter().map(|v| (*v, *v))),
             Distribution::Curve(points) => hull(points.iter().map(|p| (p.0, p.0))),
             Distribution::Mix(parts) => {
                 hull(parts.iter().filter(|p| p.0 > 0.0).map(|p| p.1.bounds()))
@@ -239,6 +243,9 @@ pub enum Choice<T> {
 pub enum Weighted<T> {
     /// Things with their weights.
     Choice(Vec<(T, f64)>),
+    /// Not drawn: the first for the first slot of the frame, the second for the second, and from
+    /// the beginning again where they end.
+    Each(Vec<T>),
 }
 
 impl<T> Choice<T> {
@@ -247,13 +254,14 @@ impl<T> Choice<T> {
         Self::Random(Weighted::Choice(items.into_iter().collect()))
     }
 
-    /// Everything that can come up: with a weight above 0.
+    /// Everything that can come up: all that have no weight or one above 0.
     pub fn possible(&self) -> Vec<&T> {
         match self {
             Self::Always(item) => vec![item],
             Self::Random(Weighted::Choice(items)) => {
                 items.iter().filter(|i| i.1 > 0.0).map(|i| &i.0).collect()
             }
+            Self::Random(Weighted::Each(items)) => items.iter().collect(),
         }
     }
 }

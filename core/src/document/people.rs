@@ -66,10 +66,11 @@ pub struct Body {
     pub sex: Choice<Sex>,
     /// Standing height without shoes, before `people.scale`; `"auto"` draws it for age and sex.
     pub stature_m: Auto<Param>,
-    /// Slider.
+    /// Body mass over the square of the stature, kg/m2; `"auto"` draws it for age and sex. The body
+    /// model reaches about 13 to 40.
+    pub bmi_kg_m2: Auto<Param>,
+    /// Slider at an average weight; very thin and very heavy people have less.
     pub muscle: Param,
-    /// Slider.
-    pub weight: Param,
     /// Slider: 0 idealised, 1 uncommon.
     pub proportions: Param,
     /// Where the forebears lived.
@@ -90,9 +91,8 @@ impl Default for Body {
             ]),
             sex: Choice::of([(Sex::Male, 1.0), (Sex::Female, 1.0)]),
             stature_m: Auto::default(),
-            // Within these bounds the body mass index stays between about 16 and 34.
+            bmi_kg_m2: Auto::default(),
             muscle: Param::normal(0.5, 0.18, 0.15, 0.95),
-            weight: Param::normal(0.5, 0.2, 0.15, 0.95),
             proportions: Param::normal(0.4, 0.2, 0.0, 1.0),
             ancestry: Ancestry::Dirichlet([0.4; 3]),
             cup: Param::uniform(0.2, 0.8),

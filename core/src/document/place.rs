@@ -17,7 +17,7 @@ pub enum Placement {
     Ground(Ground),
     /// Side by side along x.
     Row(Row),
-    /// In rows along x, one behind the other.
+    /// In rows along x, one behind or below the other.
     Grid(Grid),
 }
 
@@ -71,19 +71,33 @@ pub struct Row {
     pub center_m: [f64; 3],
 }
 
-/// Rows along x, the first one nearest to +Z.
+/// Rows along x.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Grid {
     /// How many along x.
     pub columns: u32,
-    /// How many along z.
+    /// How many rows.
     pub rows: u32,
-    /// From one to the next, along x and z.
+    /// From one to the next along x, and from row to row.
     pub spacing_m: [f64; 2],
     /// The middle of the grid.
     #[serde(default)]
     pub center_m: [f64; 3],
+    /// Where the rows after the first one are.
+    #[serde(default)]
+    pub plane: GridPlane,
+}
+
+/// In which plane a [`Grid`] lies.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum GridPlane {
+    /// On the ground: the first row is nearest to +Z.
+    #[default]
+    Ground,
+    /// Upright, as on a contact sheet: the first row is on top.
+    Upright,
 }
 
 /// What surfaces are made of where a texture does not say.

@@ -255,9 +255,11 @@ fn body(c: &mut Check, body: &Body) {
     if let Auto::Given(stature) = &body.stature_m {
         c.param("people.body.stature_m", stature, Range::from_to(0.4, 2.6));
     }
-    let sliders: [(&str, &Param); 5] = [
+    if let Auto::Given(bmi) = &body.bmi_kg_m2 {
+        c.param("people.body.bmi_kg_m2", bmi, Range::from_to(10.0, 60.0));
+    }
+    let sliders: [(&str, &Param); 4] = [
         ("people.body.muscle", &body.muscle),
-        ("people.body.weight", &body.weight),
         ("people.body.proportions", &body.proportions),
         ("people.body.cup", &body.cup),
         ("people.body.firmness", &body.firmness),

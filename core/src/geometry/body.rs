@@ -7,7 +7,8 @@
 
 use glam::DVec3;
 
-use super::phenotype::{Shape, evaluate, face_weights, heights, macro_weights};
+use super::phenotype::{Shape, evaluate};
+use super::solve::{mass_kg, solve_shape};
 use crate::library::figure::data::KEYPOINT_VERTICES;
 use crate::library::figure::{Figure, FigureError, GroupId, JOINT_COUNT, LOD_COUNT, VOLUME_LOD};
 use crate::library::mesh::SkinVertex;
@@ -15,8 +16,6 @@ use crate::scene::Body;
 
 /// Thickness of the soles of shoes, metres.
 pub const SOLE_M: f32 = 0.012;
-/// Mean density of the living body, kg per cubic metre.
-const DENSITY_KG_M3: f64 = 980.0;
 /// Clothes and the difference of the levels of detail, for bounds.
 const COVER_M: f64 = 0.05;
 /// Hair, likewise.
@@ -102,57 +101,12 @@ pub fn rest_body(
         ground,
         reach_m: reach(figure, &needed, &heads_m),
         stature_m: body.stature_m,
-        mass_kg: volume_m3(figure, &needed.parts[0].1) * DENSITY_KG_M3,
+        mass_kg: mass_kg(figure, &needed.parts[0].1),
         head_scale,
         heads_m,
         tails_m,
         shape,
     })
-}
-
-/// Weights, scale and lift that give the wanted stature. Stature is linear in the height slider;
-/// what lies beyond the slider is done by uniform scale.
-fn solve_shape(
-    figure: &Figure,
-    body: &Body,
-    face: &[(String, f64)],
-) -> Result<(Shape, f64), FigureError> {
-    let d = figure.data();
-    let extent = |shape: &Shape| {
-        let top = heights(figure, shape, &d.crown).into_iter().fold(f32::MIN, f32::max);
-        let low = heights(figure, shape, &d.feet).into_iter().fold(f32::MAX, f32::min);
-        (f64::from(top), f64::from(low))
-    };
-    let with = |height: f64, locals: &[(usize, f32)]| Shape {
-        macros: macro_weights(figure, body, height),
-        locals: locals.to_vec(),
-        scale: 1.0,
-        lift_m: 0.0,
-    };
-    let head_scale = head_scale(figure, &with(0.5, &[]));
-    let locals = face_weights(figure, face, head_scale)?;
-    let stature = |height: f64| {
-        let (top, low) = extent(&with(height, &locals));
-        top - low
-    };
-    let (short, tall) = (stature(0.0), stature(1.0));
-    let height = ((body.stature_m - short) / (tall - short)).clamp(0.0, 1.0);
-    let mut shape = with(height, &locals);
-    let (top, low) = extent(&shape);
-    shape.scale = (body.stature_m / (top - low)) as f32;
-    shape.lift_m = SOLE_M - (low as f32) * shape.scale;
-    Ok((shape, head_scale))
-}
-
-/// Height of the head's bone against the template's.
-fn head_scale(figure: &Figure, shape: &Shape) -> f64 {
-    let d = figure.data();
-    let j = d.joint_names.iter().position(|n| n == "Head").unwrap_or(0);
-    let size = |shape: &Shape| {
-        let mean = |v: &[u16]| heights(figure, shape, v).iter().sum::<f32>() / v.len() as f32;
-        f64::from(mean(&d.joint_tails[8 * j..8 * j + 8]) - mean(&d.joint_heads[8 * j..8 * j + 8]))
-    };
-    size(shape) / size(&Shape { scale: 1.0, ..Shape::default() })
 }
 
 /// Positions of the vertices that every body needs.
@@ -246,19 +200,6 @@ fn reach(figure: &Figure, needed: &Needed, heads: &[DVec3; JOINT_COUNT]) -> [f64
     out
 }
 
-/// Signed volume inside the skin's triangles (divergence theorem).
-fn volume_m3(figure: &Figure, skin: &[[f32; 3]]) -> f64 {
-    let group = figure.group(GroupId::Skin);
-    let at =
-        |r: u16| DVec3::from_array(skin[usize::from(group.render[usize::from(r)])].map(f64::from));
-    let six: f64 = group.lods[VOLUME_LOD]
-        .triangles
-        .chunks_exact(3)
-        .map(|t| at(t[0]).dot(at(t[1]).cross(at(t[2]))))
-        .sum();
-    six / 6.0 * f64::from(figure.data().volume_factor[0])
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -274,7 +215,7 @@ mod tests {
                     age_years,
                     stature_m: 0.8 + 0.22 * i as f64,
                     muscle: x,
-                    weight: 1.0 - x,
+                    bmi_kg_m2: 16.0 + 18.0 * (1.0 - x),
                     ancestry: [x, 0.2, 1.0 - x],
                     ..average(sex)
                 });
@@ -294,17 +235,6 @@ mod tests {
             let low = all.iter().map(|p| p[1]).fold(f32::MAX, f32::min);
             assert!((f64::from(top - low) - body.stature_m).abs() < 5e-4, "{body:?} {}", top - low);
             assert!((low - SOLE_M).abs() < 1e-5);
-        }
-    }
-
-    #[test]
-    fn an_average_adult_weighs_what_adults_weigh() {
-        let figure = Figure::built_in().unwrap();
-        for sex in [Sex::Male, Sex::Female] {
-            let body = average(sex);
-            let rest = rest_body(&figure, &body, &[]).unwrap();
-            let bmi = rest.mass_kg / (body.stature_m * body.stature_m);
-            assert!((18.0..26.0).contains(&bmi), "{sex:?} {bmi}");
         }
     }
 

@@ -7,6 +7,7 @@
 //! |---|---|
 //! | [`phenotype`] | sliders -> weights of shape targets -> vertex positions |
 //! | [`body`] | joints, keypoints, contact points and measures of a body at rest |
+//! | `solve` | sliders of the body model from stature and body mass index |
 //! | [`person`] | a dressed person at rest: skin, eyes, hair and clothes as one mesh |
 //! | [`surface`] | what the parts of a person look like |
 //! | `garment`, `hair`, `cut` | clothes and hair, cut from shells along scalar fields |
@@ -24,4 +25,5 @@ pub mod points;
 pub mod pose;
 pub mod shape;
 pub mod skeleton;
+mod solve;
 pub mod surface;

@@ -139,8 +139,8 @@ impl MeshKey {
             sex,
             age_years,
             stature_m,
+            bmi_kg_m2,
             muscle,
-            weight,
             proportions,
             ancestry: [african, asian, european],
             cup,
@@ -149,7 +149,8 @@ impl MeshKey {
         let (top, bottom) = (&outfit.top, &outfit.bottom);
         let mut hasher = Hasher::new();
         hasher.bytes(&[sex as u8, look.hair as u8, bottom.kind as u8]);
-        let sizes = [age_years, stature_m, muscle, weight, proportions, african, asian, european];
+        let sizes =
+            [age_years, stature_m, bmi_kg_m2, muscle, proportions, african, asian, european];
         let cuts = [cup, firmness, top.sleeve, top.neckline, top.looseness_m];
         let ends = [bottom.length, bottom.looseness_m];
         sizes.iter().chain(&cuts).chain(&ends).for_each(|v| hasher.number(*v));
@@ -309,7 +310,7 @@ mod tests {
                 age_years: [2.0, 9.0, 35.0, 80.0, 25.0][i % 5],
                 stature_m: [0.88, 1.32, 1.9, 1.6, 1.7][i % 5],
                 muscle: x,
-                weight: [0.1, 0.9, 0.5][i % 3],
+                bmi_kg_m2: [18.0, 30.0, 23.0][i % 3],
                 ancestry: [x, 1.0 - x, 0.3],
                 cup: x,
                 ..average(sex)

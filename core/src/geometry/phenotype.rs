@@ -46,23 +46,38 @@ pub fn age_slider(age_years: f64) -> f64 {
     a.1 + (b.1 - a.1) * t
 }
 
-/// Weights of all keywords for a body, with the given age slider and height slider.
-fn keyword_weights(body: &Body, age: f64, height: f64) -> [f64; KEYWORDS.len()] {
+/// Largest weight slider: a quarter beyond the model's own end people still look like people, and
+/// all but one in a thousand adults are within.
+pub const HEAVIEST: f64 = 1.25;
+
+/// Sliders of the body model that are solved for, 0..1.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sliders {
+    /// As the body says, or less.
+    pub muscle: f64,
+    /// Solved for the body mass index; up to [`HEAVIEST`], where the morphs are carried on.
+    pub weight: f64,
+    /// Solved for the stature.
+    pub height: f64,
+}
+
+/// Weights of all keywords for a body, with the given age slider.
+fn keyword_weights(body: &Body, age: f64, sliders: Sliders) -> [f64; KEYWORDS.len()] {
     let mut out = [0.0; KEYWORDS.len()];
     let mut hat = |first: &str, anchors: usize, value: f64| {
         let at = KEYWORDS.iter().position(|k| *k == first).expect("keywords are constants");
-        let x = value.clamp(0.0, 1.0) * (anchors - 1) as f64;
+        let x = value.max(0.0) * (anchors - 1) as f64;
         let i = (x as usize).min(anchors - 2);
         out[at + i] = 1.0 - (x - i as f64);
         out[at + i + 1] = x - i as f64;
     };
-    hat("baby", 4, age);
-    hat("minmuscle", 3, body.muscle);
-    hat("minweight", 3, body.weight);
-    hat("minheight", 2, height);
-    hat("idealproportions", 2, body.proportions);
-    hat("mincup", 3, body.cup);
-    hat("minfirmness", 3, body.firmness);
+    hat("baby", 4, age.min(1.0));
+    hat("minmuscle", 3, sliders.muscle.min(1.0));
+    hat("minweight", 3, sliders.weight.min(HEAVIEST));
+    hat("minheight", 2, sliders.height.min(1.0));
+    hat("idealproportions", 2, body.proportions.min(1.0));
+    hat("mincup", 3, body.cup.min(1.0));
+    hat("minfirmness", 3, body.firmness.min(1.0));
     hat("male", 2, if body.sex == Sex::Male { 0.0 } else { 1.0 });
     let ancestry = body.ancestry.map(|a| a.max(0.0));
     let sum: f64 = ancestry.iter().sum();
@@ -81,20 +96,21 @@ fn weighted_rows(figure: &Figure, keywords: &[f64]) -> Vec<(usize, f64)> {
             for &k in row.keywords.iter().take_while(|&&k| k != NO_KEYWORD) {
                 weight *= keywords[usize::from(k)];
             }
-            (weight > 0.0).then_some((row.target, weight))
+            // Beyond a slider's end one neighbour counts negative.
+            (weight != 0.0).then_some((row.target, weight))
         })
         .collect()
 }
 
-/// Macro weights of a body at a height slider; rows that share a target are added up.
+/// Macro weights of a body; rows that share a target are added up.
 #[must_use]
-pub fn macro_weights(figure: &Figure, body: &Body, height: f64) -> Vec<(usize, f32)> {
-    macro_weights_at(figure, body, age_slider(body.age_years), height)
+pub fn macro_weights(figure: &Figure, body: &Body, sliders: Sliders) -> Vec<(usize, f32)> {
+    macro_weights_at(figure, body, age_slider(body.age_years), sliders)
 }
 
-fn macro_weights_at(figure: &Figure, body: &Body, age: f64, height: f64) -> Vec<(usize, f32)> {
+fn macro_weights_at(figure: &Figure, body: &Body, age: f64, sliders: Sliders) -> Vec<(usize, f32)> {
     let mut sums = BTreeMap::new();
-    for (target, weight) in weighted_rows(figure, &keyword_weights(body, age, height)) {
+    for (target, weight) in weighted_rows(figure, &keyword_weights(body, age, sliders)) {
         *sums.entry(target).or_insert(0.0) += weight;
     }
     sums.into_iter().map(|(t, w)| (t, w as f32)).collect()
@@ -210,13 +226,15 @@ pub(super) fn heights(figure: &Figure, shape: &Shape, vertices: &[u16]) -> Vec<f
 pub(crate) mod tests {
     use super::*;
 
+    const MIDDLE: Sliders = Sliders { muscle: 0.5, weight: 0.5, height: 0.5 };
+
     pub(crate) fn average(sex: Sex) -> Body {
         Body {
             sex,
             age_years: 30.0,
             stature_m: if sex == Sex::Male { 1.78 } else { 1.65 },
+            bmi_kg_m2: 22.0,
             muscle: 0.5,
-            weight: 0.5,
             proportions: 0.5,
             ancestry: [1.0 / 3.0; 3],
             cup: 0.5,
@@ -249,8 +267,8 @@ pub(crate) mod tests {
 
     #[test]
     fn keyword_weights_share_each_slider_between_two_neighbours() {
-        let body = Body { muscle: 0.3, weight: 0.9, ..average(Sex::Female) };
-        let w = keyword_weights(&body, 0.5, 0.25);
+        let sliders = Sliders { muscle: 0.3, weight: 0.9, height: 0.25 };
+        let w = keyword_weights(&average(Sex::Female), 0.5, sliders);
         let of = |k: &str| w[KEYWORDS.iter().position(|n| *n == k).unwrap()];
         let near = |a: f64, b: f64| assert!((a - b).abs() < 1e-12, "{a} {b}");
         near(of("minmuscle"), 0.4);
@@ -268,8 +286,8 @@ pub(crate) mod tests {
     #[test]
     fn an_adult_of_mixed_ancestry_needs_46_targets_two_of_them_empty() {
         let figure = Figure::built_in().unwrap();
-        let body = Body { muscle: 0.4, weight: 0.7, ..average(Sex::Male) };
-        let rows = weighted_rows(&figure, &keyword_weights(&body, 0.75, 0.5));
+        let sliders = Sliders { muscle: 0.4, weight: 0.7, height: 0.5 };
+        let rows = weighted_rows(&figure, &keyword_weights(&average(Sex::Male), 0.75, sliders));
         assert_eq!(rows.len(), 46 - 2, "the two empty ones are not in the file");
     }
 
@@ -277,7 +295,7 @@ pub(crate) mod tests {
     fn statures_at_the_middle_of_the_sliders() {
         let figure = Figure::built_in().unwrap();
         for (sex, stature_m) in [(Sex::Male, 1.909), (Sex::Female, 1.769)] {
-            let macros = macro_weights_at(&figure, &average(sex), 2.0 / 3.0, 0.5);
+            let macros = macro_weights_at(&figure, &average(sex), 2.0 / 3.0, MIDDLE);
             let shape = Shape { macros, scale: 1.0, ..Shape::default() };
             let d = figure.data();
             let top = heights(&figure, &shape, &d.crown).into_iter().fold(f32::MIN, f32::max);
@@ -290,7 +308,11 @@ pub(crate) mod tests {
     fn a_vertex_does_not_depend_on_the_range_that_asks_for_it() {
         let figure = Figure::built_in().unwrap();
         let shape = Shape {
-            macros: macro_weights(&figure, &average(Sex::Female), 0.4),
+            macros: macro_weights(
+                &figure,
+                &average(Sex::Female),
+                Sliders { height: 0.4, ..MIDDLE },
+            ),
             locals: vec![(3, 0.7), (40, 0.3)],
             scale: 1.01,
             lift_m: 0.8,

@@ -65,7 +65,7 @@ keys! {
     SEX = "people.body.sex",
     STATURE = "people.body.stature",
     MUSCLE = "people.body.muscle",
-    WEIGHT = "people.body.weight",
+    BMI = "people.body.bmi",
     PROPORTIONS = "people.body.proportions",
     ANCESTRY = "people.body.ancestry",
     CUP = "people.body.cup",

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use super::body::interpolate;
+use super::growth::interpolate;
 use super::keys;
 use super::people::{PersonTraits, Source};
 use super::quantile;

@@ -26,7 +26,8 @@ pub(super) fn people(
         let here = Source::new(draws, slot);
         let identity = identities.map(|i| i.of_slot(slot));
         // Whoever recurs has the numbers of an identity instead of those of a frame.
-        let of_identity = |id| Source::new(Draws::new(draws.seed(), id), 0);
+        let of_identity =
+            |id| Source { turn: slot, ..Source::new(Draws::new(draws.seed(), id), 0) };
         let lasting = identity.map_or(here, of_identity);
         let body = body::body(&people.body, lasting.random_if(people.body.enabled));
         let traits = PersonTraits::new(&body);
@@ -53,11 +54,13 @@ pub(super) fn people(
 pub(super) struct Source {
     draws: Draws,
     slot: u32,
+    /// The slot of the frame, whatever the numbers are keyed by.
+    turn: u32,
 }
 
 impl Source {
     pub(super) const fn new(draws: Draws, slot: u32) -> Self {
-        Self { draws, slot }
+        Self { draws, slot, turn: slot }
     }
 
     pub(super) const fn random_if(self, random: bool) -> Self {
@@ -65,7 +68,7 @@ impl Source {
     }
 
     pub(super) const fn of(self, key: Key) -> Draw {
-        self.draws.of(key, self.slot)
+        self.draws.of(key, self.slot).in_turn(self.turn)
     }
 }
 

@@ -8,7 +8,7 @@ use super::keys;
 use super::poisson_disk::poisson_disk;
 use super::value::number;
 use crate::base::rng::{Draws, Key};
-use crate::document::{Grid, Ground, Placement, PoissonDisk, Row};
+use crate::document::{Grid, GridPlane, Ground, Placement, PoissonDisk, Row};
 
 /// Tries to find room on the ground before a slot stays empty.
 const TRIES: u32 = 200;
@@ -50,7 +50,8 @@ pub(super) fn places(placement: &Placement, keys: &PlaceKeys, draws: Draws) -> P
         Placement::Ground(ground) => on_ground(ground, keys, draws),
         Placement::Row(row) => {
             let Row { count, spacing_m, center_m } = *row;
-            let grid = Grid { columns: count, rows: 1, spacing_m: [spacing_m; 2], center_m };
+            let plane = GridPlane::Ground;
+            let grid = Grid { columns: count, rows: 1, spacing_m: [spacing_m; 2], center_m, plane };
             on_grid(&grid)
         }
         Placement::Grid(grid) => on_grid(grid),
@@ -130,8 +131,12 @@ fn on_grid(grid: &Grid) -> Places {
     let offset = |i: u32, count: u32, step: f64| (f64::from(i) - 0.5 * f64::from(count - 1)) * step;
     let [across, along] = grid.spacing_m;
     Places::all((0..grid.rows).flat_map(|row| {
-        let z = -offset(row, grid.rows, along);
-        (0..grid.columns).map(move |c| center + DVec3::new(offset(c, grid.columns, across), 0.0, z))
+        let back = -offset(row, grid.rows, along);
+        let start = match grid.plane {
+            GridPlane::Ground => DVec3::new(0.0, 0.0, back),
+            GridPlane::Upright => DVec3::new(0.0, back, 0.0),
+        };
+        (0..grid.columns).map(move |c| center + start + DVec3::X * offset(c, grid.columns, across))
     }))
 }
 
@@ -185,9 +190,12 @@ mod tests {
         let x: Vec<f64> = points.iter().map(|(_, p)| p.x).collect();
         assert_eq!(x, [0.5, 1.0, 1.5]);
         assert!(points.iter().all(|(_, p)| p.z == -2.0));
-        let grid = Grid { columns: 2, rows: 2, spacing_m: [1.0, 3.0], center_m: [0.0; 3] };
-        let points = places(&Placement::Grid(grid), &PEOPLE, Draws::new(4, 0)).points;
-        assert_eq!(points[0].1, DVec3::new(-0.5, 0.0, 1.5));
-        assert_eq!(points[3].1, DVec3::new(0.5, 0.0, -1.5));
+        for (plane, back) in [(GridPlane::Ground, DVec3::Z), (GridPlane::Upright, DVec3::Y)] {
+            let (spacing_m, center_m) = ([1.0, 3.0], [0.0; 3]);
+            let grid = Grid { columns: 2, rows: 2, spacing_m, center_m, plane };
+            let points = places(&Placement::Grid(grid), &PEOPLE, Draws::new(4, 0)).points;
+            assert_eq!(points[0].1, DVec3::new(-0.5, 0.0, 0.0) + 1.5 * back);
+            assert_eq!(points[3].1, DVec3::new(0.5, 0.0, 0.0) - 1.5 * back);
+        }
     }
 }

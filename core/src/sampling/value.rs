@@ -38,6 +38,7 @@ fn number_at(param: &Param, draw: Draw, index: u16) -> f64 {
         Distribution::Binomial(law) => quantile::binomial(u, law),
         Distribution::Poisson(mean) => quantile::poisson(u, *mean),
         Distribution::Choice(items) => items[quantile::index(u, items.iter().map(|i| i.1))].0,
+        Distribution::Each(values) => *in_turn(values, draw),
         Distribution::Curve(points) => quantile::curve(u, points),
         Distribution::Mix(parts) => {
             let part = quantile::index(u, parts.iter().map(|p| p.0));
@@ -66,7 +67,14 @@ pub(super) fn item<T>(choice: &Choice<T>, draw: Draw) -> &T {
         Choice::Random(Weighted::Choice(items)) => {
             &items[quantile::index(draw.uniform(), items.iter().map(|i| i.1))].0
         }
+        Choice::Random(Weighted::Each(items)) => in_turn(items, draw),
     }
+}
+
+/// The item whose turn it is; the middle one where nothing is to vary.
+fn in_turn<T>(items: &[T], draw: Draw) -> &T {
+    let turn = if draw.is_middle() { items.len() / 2 } else { draw.turn() as usize };
+    &items[turn % items.len()]
 }
 
 fn axes(params: &[Param; 3], draw: Draw) -> DVec3 {

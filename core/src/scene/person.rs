@@ -35,19 +35,21 @@ pub enum Sex {
     Female,
 }
 
-/// Body shape. The sliders are those of the body model, all 0..1 with 0.5 in the middle.
+/// Body shape. The sliders are those of the body model, all 0..1 with 0.5 in the middle; the ones
+/// that are not here, of height and weight, are solved for.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Body {
     /// Male or female.
     pub sex: Sex,
     /// 1..90.
     pub age_years: f64,
-    /// Standing height without shoes; the model's height slider is solved for it.
+    /// Standing height without shoes.
     pub stature_m: f64,
-    /// Slider.
+    /// Body mass over the square of the stature. What the model does not reach becomes the nearest
+    /// that it does, between about 13 and 40 for most adults.
+    pub bmi_kg_m2: f64,
+    /// Slider at an average weight; it falls towards 0 for the very thin and the very heavy.
     pub muscle: f64,
-    /// Slider.
-    pub weight: f64,
     /// Slider: 0 idealised, 1 uncommon.
     pub proportions: f64,
     /// African, Asian, European: weights, normalised to sum 1 by their use.

@@ -157,6 +157,14 @@ impl Check {
                     .all(|(i, item)| self.finite(&format!("{path}[{i}]"), item.0))
                     && self.weights(&path, items.iter().map(|i| i.1))
             }
+            Distribution::Each(values) => {
+                let path = format!("{path}.each");
+                self.some(&path, values)
+                    && values
+                        .iter()
+                        .enumerate()
+                        .all(|(i, v)| self.finite(&format!("{path}[{i}]"), *v))
+            }
             Distribution::Curve(points) => self.curve(&format!("{path}.curve"), points),
             Distribution::Mix(parts) => {
                 let path = format!("{path}.mix");
@@ -339,7 +347,12 @@ impl Check {
             Choice::Random(Weighted::Choice(items)) => {
                 self.weights(&format!("{path}.choice"), items.iter().map(|i| i.1))
             }
+            Choice::Random(Weighted::Each(items)) => self.some(&format!("{path}.each"), items),
         }
+    }
+
+    fn some<T>(&mut self, path: &str, items: &[T]) -> bool {
+        !items.is_empty() || self.report(path, "must hold at least one item, got none")
     }
 
     pub(super) fn ids(&mut self, path: &str, choice: &Choice<String>) -> bool {

@@ -124,7 +124,9 @@ fn hostile_values_are_refused_with_their_path() {
             json!({"beta": {"alpha": 0, "beta": 1}}),
             "people.body.muscle.beta.alpha",
         ),
-        ("/people/body/weight", json!({"binomial": {"n": 3, "p": 0.5}}), "people.body.weight"),
+        ("/people/body/muscle", json!({"binomial": {"n": 3, "p": 0.5}}), "people.body.muscle"),
+        ("/people/body/bmi_kg_m2", json!(5), "people.body.bmi_kg_m2"),
+        ("/people/body/bmi_kg_m2", json!({"uniform": [20, 90]}), "people.body.bmi_kg_m2"),
         ("/people/body/ancestry", json!({"shares": [0, 0, 0]}), "people.body.ancestry.shares"),
         (
             "/people/body/ancestry",
