@@ -13,6 +13,7 @@ use serde::{Deserialize, Serialize};
 
 mod camera;
 pub mod check;
+mod face;
 pub mod file;
 mod format;
 mod lights;
@@ -25,6 +26,7 @@ mod validate;
 mod vector;
 
 pub use camera::{Camera, Image};
+pub use face::{Expression, ExpressionKind};
 pub use lights::{
     Clock, Environment, Lights, MovingLight, PointLight, Sun, SunAngles, SunDirection,
 };

@@ -3,6 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use super::face::Expression;
 use super::place::PoissonDisk;
 use super::{Auto, Choice, Color, ColorLaw, Flag, Param, Placement, Rotation};
 use crate::scene::{BottomKind, HairStyle, Sex};
@@ -146,6 +147,8 @@ pub struct Look {
     pub face_std: f64,
     /// Largest amount.
     pub face_max: f64,
+    /// Expression and gaze.
+    pub expression: Expression,
 }
 
 impl Default for Look {
@@ -159,6 +162,7 @@ impl Default for Look {
             face_targets: Param::uniform(10.0, 25.0),
             face_std: 0.35,
             face_max: 0.8,
+            expression: Expression::default(),
         }
     }
 }

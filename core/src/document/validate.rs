@@ -302,6 +302,12 @@ fn look(c: &mut Check, look: &Look) {
     c.param("people.look.face_targets", &look.face_targets, Range::from_to(0.0, 100.0));
     c.number("people.look.face_std", look.face_std, SHARE);
     c.number("people.look.face_max", look.face_max, SHARE);
+    let expression = &look.expression;
+    let gaze = |limit_deg: f64| Range::from_to(-limit_deg, limit_deg);
+    c.choice("people.look.expression.kind", &expression.kind);
+    c.param("people.look.expression.strength", &expression.strength, SHARE);
+    c.param("people.look.expression.gaze_yaw_deg", &expression.gaze_yaw_deg, gaze(25.0));
+    c.param("people.look.expression.gaze_pitch_deg", &expression.gaze_pitch_deg, gaze(20.0));
 }
 
 fn wardrobe(c: &mut Check, wardrobe: &Wardrobe) {

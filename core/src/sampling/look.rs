@@ -2,6 +2,7 @@
 
 use std::collections::BTreeSet;
 
+use super::expression::face_units;
 use super::growth::interpolate;
 use super::keys;
 use super::people::{PersonTraits, Source};
@@ -183,6 +184,7 @@ fn face(look: &document::Look, shapes: &[FaceShape], source: Source) -> Vec<(Str
         let amount = (std * quantile::normal(u)).abs().min(look.face_max);
         face.extend(shapes[shape].iter().map(|name| (name.clone(), amount)));
     }
+    face.extend(face_units(&look.expression, source));
     face.sort_by(|a, b| a.0.cmp(&b.0));
     face
 }
@@ -246,7 +248,8 @@ mod tests {
         let names = names.map(str::to_owned).to_vec();
         let shapes = face_shapes(&names);
         assert_eq!(shapes.len(), 4);
-        let law = document::Look { face_targets: 3.0.into(), ..document::Look::default() };
+        let expression = document::Expression { enabled: false, ..Default::default() };
+        let law = document::Look { face_targets: 3.0.into(), expression, ..Default::default() };
         for frame in 0..50 {
             let face = face(&law, &shapes, Source::new(Draws::new(1, frame), 0));
             let of = |name: &str| face.iter().find(|f| f.0 == name).map(|f| f.1);

@@ -13,6 +13,7 @@ use crate::scene::Scene;
 mod background;
 mod body;
 mod camera;
+mod expression;
 mod growth;
 mod keys;
 mod lights;
