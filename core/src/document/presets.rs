@@ -10,13 +10,15 @@ pub struct Preset {
 }
 
 /// All of them, the one to begin with first.
-pub const ALL: [Preset; 3] = [
+pub const ALL: [Preset; 5] = [
     Preset { name: "starter", text: include_str!("../../../presets/starter.json") },
     Preset {
         name: "peoplesanspeople",
         text: include_str!("../../../presets/peoplesanspeople.json"),
     },
     Preset { name: "lineup", text: include_str!("../../../presets/lineup.json") },
+    Preset { name: "ages", text: include_str!("../../../presets/ages.json") },
+    Preset { name: "faces", text: include_str!("../../../presets/faces.json") },
 ];
 
 /// The preset of a name.
