@@ -1,0 +1,313 @@
+//! Light, textures and shadows against the oracle and closed forms.
+
+use figurant_core::draw::DrawList;
+use figurant_core::draw::abi::{Material, PointLight, Sun};
+use figurant_core::library::texture::{Encoding, Texture};
+use figurant_core::plan::Output;
+use figurant_tests::drawlists::{self, add, empty, mixed, view};
+use figurant_tests::meshes::{self, Dice};
+use figurant_tests::oracle::{Oracle, display, nits, radiance};
+use glam::{DAffine3, DQuat, DVec3};
+use std::sync::Arc;
+
+use super::common::*;
+
+/// Normals, barycentric coordinates and the reflectance model, by way of the picture.
+#[test]
+fn shading_agrees_with_the_oracle() {
+    let (mut compared, mut apart) = (0, 0);
+    for seed in 300..312 {
+        let mut list = mixed(seed, 1);
+        let mut dice = Dice::new(seed + 7);
+        let turn = DAffine3::from_quat(DQuat::from_axis_angle(dice.direction(), 2.0));
+        list.view.view_from_world = drawlists::rows(&turn);
+        list.lights.sun = Some(Sun {
+            direction_to_sun: dice.direction().as_vec3().to_array(),
+            color_lux: [2.0, 1.8, 1.5],
+            shadow: false,
+        });
+        list.lights.points = (0..5)
+            .map(|_| PointLight {
+                position: (dice.vector() * 3.0 - DVec3::Z * 3.0).as_vec3().to_array(),
+                range_m: dice.range(2.0, 8.0) as f32,
+                color_cd: [1.0, 2.0, 3.0],
+                radius_m: 0.05,
+            })
+            .collect();
+        list.lights.sky_lux = [0.8, 0.6, 0.4];
+        list.lights.ground_lux = [0.1, 0.2, 0.3];
+        list.materials.iter_mut().for_each(|m| m.wrap = if dice.unit() < 0.3 { 0.3 } else { 0.0 });
+        let frame = render(&list, &[Output::Rgb]);
+        let oracle = Oracle::new(&list);
+        for y in 0..frame.height {
+            for x in 0..frame.width {
+                let sample = oracle.sample(f64::from(x) + 0.5, f64::from(y) + 0.5);
+                let Some(hit) = sample.hit.filter(|_| !sample.doubt) else { continue };
+                let material = &list.materials[list.draws[hit.draw].material as usize];
+                let albedo = DVec3::from_array(material.base_color.map(f64::from));
+                let light = radiance(&list, material, albedo, &hit).to_array();
+                let got = pixel(&frame, x as usize, y as usize);
+                compared += 1;
+                for c in 0..3 {
+                    let error = (f64::from(got[c]) - display(light[c], 1.0)).abs();
+                    apart += usize::from(error > 0.75);
+                    let expected = light.map(|v| display(v, 1.0));
+                    assert!(error < 1.5, "scene {seed} at {x},{y}: {got:?} is not {expected:?}");
+                }
+            }
+        }
+    }
+    assert!(compared > 50_000, "only {compared} pixels compared");
+    assert!(apart * 1000 < compared, "{apart} of {compared} pixels off by more than rounding");
+}
+
+#[test]
+fn a_white_wall_sends_back_what_the_formula_says() {
+    // A wall straight ahead; only its middle pixel is looked at.
+    let wall = |list: &mut DrawList, distance: f64| {
+        add(
+            list,
+            meshes::square(),
+            facing_square(20.0, DVec3::new(0.0, 0.0, -distance)),
+            plain([1.0; 3]),
+        );
+        list.lights.sky_lux = [0.0; 3];
+        list.lights.ground_lux = [0.0; 3];
+    };
+    // Lambert gives E / pi. The mirror term at normal incidence and roughness 1 is that of
+    // F = 0.04, D = 1/pi, V = 1/4, a hundredth more of it.
+    let expected = |lux: f64| lux / std::f64::consts::PI * (1.0 + 0.04 / 4.0);
+    let measured = |list: &DrawList| {
+        nits(f64::from(pixel(&render(list, &[Output::Rgb]), 32, 32)[1]), f64::from(list.exposure))
+    };
+
+    let mut list = empty(view(65, 65, 65.0), 4);
+    wall(&mut list, 5.0);
+    list.lights.sun =
+        Some(Sun { direction_to_sun: [0.0, 0.0, 1.0], color_lux: [1.0; 3], shadow: true });
+    list.exposure = 1.2;
+    let got = measured(&list);
+    assert!((got / expected(1.0) - 1.0).abs() < 0.01, "sun: {got} is not {}", expected(1.0));
+
+    list.lights.sun = None;
+    list.lights.points =
+        vec![PointLight { position: [0.0; 3], range_m: 20.0, color_cd: [30.0; 3], radius_m: 0.05 }];
+    let window = 1.0 - (5.0f64 / 20.0).powi(4);
+    let lux = 30.0 / 25.0 * window * window;
+    let got = measured(&list);
+    assert!((got / expected(lux) - 1.0).abs() < 0.01, "point: {got} is not {}", expected(lux));
+
+    // Beyond its range a light does nothing.
+    list.lights.points[0].range_m = 4.9;
+    assert_eq!(pixel(&render(&list, &[Output::Rgb]), 32, 32), [0; 3]);
+}
+
+#[test]
+fn a_background_goes_through_the_same_exposure() {
+    let mut list = empty(view(40, 33, 40.0), 4);
+    list.lights.background_nits = [0.2, 0.5, 2.0];
+    list.exposure = 0.7;
+    let frame = render(&list, &[Output::Rgb]);
+    for (got, light) in pixel(&frame, 39, 32).into_iter().zip([0.2, 0.5, 2.0]) {
+        assert!((f64::from(got) - display(light, 0.7)).abs() < 0.6);
+    }
+}
+
+#[test]
+fn an_edge_is_blended_by_coverage_after_tone_mapping() {
+    // A black square whose left edge halves a pixel column, before a bright background.
+    let mut list = empty(view(64, 64, 100.0), 16);
+    list.lights.sky_lux = [0.0; 3];
+    list.lights.ground_lux = [0.0; 3];
+    list.lights.background_nits = [50.0; 3];
+    add(
+        &mut list,
+        meshes::square(),
+        facing_square(2.0, DVec3::new(0.05, 0.0, -10.0)),
+        plain([0.0; 3]),
+    );
+    let frame = render(&list, &[Output::Rgb]);
+    let linear = |v: u8| {
+        let v = f64::from(v) / 255.0;
+        if v <= 0.04045 { v / 12.92 } else { ((v + 0.055) / 1.055).powf(2.4) }
+    };
+    let (outside, edge, inside) =
+        (pixel(&frame, 10, 32)[0], pixel(&frame, 22, 32)[0], pixel(&frame, 30, 32)[0]);
+    assert_eq!(inside, 0);
+    assert!((linear(edge) / linear(outside) - 0.5).abs() < 0.01, "{edge} of {outside}");
+}
+
+#[test]
+fn textures_are_read_upright_repeated_and_filtered_in_linear_light() {
+    // Four colours, one per texel.
+    let texels = vec![0x0000_00ff, 0x0000_ff00, 0x00ff_0000, 0x00ff_ffff, 0x0080_8080];
+    let mut list = empty(view(64, 64, 64.0), 4);
+    list.textures.push(Arc::new(Texture { log2_size: 1, encoding: Encoding::Srgb, texels }));
+    list.lights.sky_lux = [3.0; 3];
+    list.lights.ground_lux = [3.0; 3];
+    let material = Material {
+        base_color: [1.0; 3],
+        roughness: 1.0,
+        albedo_map: Some(0),
+        ..Material::default()
+    };
+    // The square fills the picture: texel centres at 16 and 48 px.
+    add(&mut list, meshes::square(), facing_square(10.0, DVec3::new(0.0, 0.0, -10.0)), material);
+    let frame = render(&list, &[Output::Rgb]);
+    let strongest = |x, y| pixel(&frame, x, y).map(|v| v > 128);
+    assert_eq!(strongest(16, 16), [true, false, false], "u = v = 1/4 is the first texel");
+    assert_eq!(strongest(47, 16), [false, true, false], "u runs to the right");
+    assert_eq!(strongest(16, 47), [false, false, true], "v runs down");
+    assert_eq!(strongest(47, 47), [true, true, true]);
+    // Halfway between black and white in green, top right to bottom left of two texels: linear.
+    let black_and_white = vec![0x0000_0000, 0x00ff_ffff, 0x0000_0000, 0x00ff_ffff, 0x0080_8080];
+    list.textures[0] =
+        Arc::new(Texture { log2_size: 1, encoding: Encoding::Srgb, texels: black_and_white });
+    let lit = |list: &DrawList, x: usize| {
+        let value = pixel(&render(list, &[Output::Rgb]), x, 32)[1];
+        nits(f64::from(value), 1.0)
+    };
+    let (dark, bright) = (lit(&list, 15), lit(&list, 47));
+    let between = 0.5 * (lit(&list, 31) + lit(&list, 32));
+    assert!((between / (0.5 * (dark + bright)) - 1.0).abs() < 0.03, "{dark} {between} {bright}");
+    // Repeated 64 times it is smaller than a pixel and becomes its coarsest level.
+    list.materials[0].uv_repeat = [64.0; 2];
+    let grey = pixel(&render(&list, &[Output::Rgb]), 20, 20);
+    let white = bright - dark;
+    let srgb_half = ((128.0 / 255.0 + 0.055) / 1.055f64).powf(2.4);
+    assert!((nits(f64::from(grey[1]), 1.0) - dark - white * srgb_half).abs() < 0.03 * white);
+}
+
+#[test]
+fn a_tilted_normal_map_turns_the_light() {
+    // Normals tilted towards growing u: light from the right counts more.
+    let tilted = |x: u8, y: u8| {
+        let texel = u32::from(x) | u32::from(y) << 8 | 0x00e0_0000;
+        vec![Arc::new(Texture { log2_size: 0, encoding: Encoding::Linear, texels: vec![texel] })]
+    };
+    let brightness = |x: u8, y: u8, sun: [f32; 3]| {
+        let mut list = empty(view(32, 32, 32.0), 1);
+        list.lights.sky_lux = [0.0; 3];
+        list.lights.ground_lux = [0.0; 3];
+        list.lights.sun = Some(Sun { direction_to_sun: sun, color_lux: [2.0; 3], shadow: false });
+        list.textures = tilted(x, y);
+        let material = Material { normal_map: Some(0), ..plain([0.8; 3]) };
+        add(&mut list, meshes::square(), facing_square(20.0, DVec3::new(0.0, 0.0, -5.0)), material);
+        pixel(&render(&list, &[Output::Rgb]), 16, 16)[0]
+    };
+    let (right, above) = ([0.7, 0.0, 0.7], [0.0, 0.7, 0.7]);
+    assert!(brightness(200, 128, right) > brightness(128, 128, right) + 10);
+    assert!(brightness(60, 128, right) + 10 < brightness(128, 128, right));
+    assert!(brightness(128, 200, above) > brightness(128, 128, above) + 10);
+    assert!(brightness(128, 60, above) + 10 < brightness(128, 128, above));
+}
+
+#[test]
+fn masked_layers_replace_albedo_in_order() {
+    let mut list = empty(view(32, 32, 32.0), 1);
+    let texels = vec![0x00ff_00ff]; // channels 0 and 2 on, 1 and 3 off
+    list.textures.push(Arc::new(Texture { log2_size: 0, encoding: Encoding::Linear, texels }));
+    let mut material = Material { mask: Some(0), ..plain([0.5; 3]) };
+    material.layers = [[1.0, 0.0, 0.0, 1.0], [0.0, 1.0, 0.0, 1.0], [0.0, 0.0, 1.0, 1.0], [1.0; 4]];
+    add(&mut list, meshes::square(), facing_square(20.0, DVec3::new(0.0, 0.0, -5.0)), material);
+    let layered = pixel(&render(&list, &[Output::Rgb]), 16, 16);
+    list.materials[0] = plain([0.0, 0.0, 1.0]);
+    assert_eq!(layered, pixel(&render(&list, &[Output::Rgb]), 16, 16));
+}
+
+// ---- shadows
+
+/// A wall 6 m away and a square plate 1 m before it, the sun straight behind the camera but for a
+/// shift to the side.
+fn plate_before_wall(samples: u32) -> DrawList {
+    let mut list = empty(view(200, 200, 200.0), samples);
+    list.lights.sky_lux = [0.1; 3];
+    list.lights.ground_lux = [0.1; 3];
+    list.lights.sun =
+        Some(Sun { direction_to_sun: [1.0, 0.0, 1.0], color_lux: [2.0; 3], shadow: true });
+    list.shadow_map_size = 1024;
+    add(
+        &mut list,
+        meshes::square(),
+        facing_square(12.0, DVec3::new(0.0, 0.0, -6.0)),
+        plain([0.8; 3]),
+    );
+    add(
+        &mut list,
+        meshes::square(),
+        facing_square(1.0, DVec3::new(1.0, 0.0, -5.0)),
+        plain([0.8; 3]),
+    );
+    list
+}
+
+#[test]
+fn a_shadow_falls_where_geometry_says() {
+    // Light goes down-left at 45 degrees: the plate at x 0.5..1.5, one metre before the wall,
+    // shades x -0.5..0.5 of it, where 6 m away a metre is 33.3 px.
+    let list = plate_before_wall(4);
+    let frame = render(&list, &[Output::Rgb, Output::Instance]);
+    let (dark, lit) = (pixel(&frame, 90, 100)[0], pixel(&frame, 70, 100)[0]);
+    assert!(u32::from(dark) * 2 < u32::from(lit), "{dark} is not in shadow of {lit}");
+    let middle = (u32::from(dark) + u32::from(lit)) / 2;
+    let shaded = |x: usize, y: usize| u32::from(pixel(&frame, x, y)[0]) < middle;
+    let left = (40..100).find(|x| shaded(*x, 100)).unwrap() as f64;
+    assert!((left - (100.0 - 0.5 * 200.0 / 6.0)).abs() <= 1.0, "left edge at {left}");
+    let top = (40..100).find(|y| shaded(95, *y)).unwrap() as f64;
+    assert!((top - (100.0 - 0.5 * 200.0 / 6.0)).abs() <= 1.0, "top edge at {top}");
+    // The rest of the wall and the plate are lit evenly: no surface shades itself.
+    for (x, y) in [(30, 30), (150, 170), (70, 100), (20, 190), (130, 100), (140, 90)] {
+        assert!(u32::from(pixel(&frame, x, y)[0]) > middle, "acne at {x},{y}");
+    }
+}
+
+#[test]
+fn an_object_out_of_sight_still_casts() {
+    let mut list = plate_before_wall(1);
+    let with = render(&list, &[Output::Rgb, Output::Box2d]);
+    list.objects[1].in_view = false;
+    let unseen = render(&list, &[Output::Rgb, Output::Box2d]);
+    assert_eq!(pixel(&with, 90, 100), pixel(&unseen, 90, 100));
+    assert_eq!(unseen.object_samples.as_ref().unwrap()[1].count, 0);
+    list.objects[1].casts_shadow = false;
+    let without = render(&list, &[Output::Rgb, Output::Box2d]);
+    assert!(pixel(&without, 90, 100)[0] > pixel(&unseen, 90, 100)[0]);
+}
+
+#[test]
+fn a_lit_sphere_shows_no_acne() {
+    // With and without its own shadow, a convex body is lit alike wherever it faces the sun.
+    let mut list = empty(view(160, 160, 200.0), 1);
+    list.lights.sky_lux = [0.0; 3];
+    list.lights.ground_lux = [0.0; 3];
+    let direction = DVec3::new(0.6, 0.5, 0.5).normalize();
+    let mut sun =
+        Sun { direction_to_sun: direction.as_vec3().to_array(), color_lux: [3.0; 3], shadow: true };
+    list.lights.sun = Some(sun);
+    list.shadow_map_size = 2048;
+    add(
+        &mut list,
+        meshes::sphere(96, 64),
+        DAffine3::from_translation(DVec3::new(0.0, 0.0, -4.0)),
+        plain([0.8; 3]),
+    );
+    let shadowed = render(&list, &[Output::Rgb]);
+    sun.shadow = false;
+    list.lights.sun = Some(sun);
+    let free = render(&list, &[Output::Rgb]);
+    let oracle = Oracle::new(&list);
+    for y in 0..160 {
+        for x in 0..160 {
+            let Some(hit) = oracle.sample(f64::from(x) + 0.5, f64::from(y) + 0.5).hit else {
+                continue;
+            };
+            if hit.normal.dot(direction) > 0.1 {
+                let (a, b) = (
+                    pixel(&shadowed, x as usize, y as usize),
+                    pixel(&free, x as usize, y as usize),
+                );
+                assert!(a[0].abs_diff(b[0]) <= 2, "{x},{y}: {a:?} is not {b:?}");
+            }
+        }
+    }
+}
