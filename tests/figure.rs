@@ -3,28 +3,11 @@
 use std::collections::BTreeMap;
 
 use figurant_core::library::figure::{Figure, GroupId, LOD_COUNT};
+use figurant_tests::solid::distance;
 use glam::DVec3;
 
 /// Nothing is looked for farther away than this.
 const FAR_M: f64 = 0.03;
-
-/// The point of a triangle that is nearest to another point: its projection, if that lies inside,
-/// or the nearest point of an edge.
-fn distance(p: DVec3, [a, b, c]: [DVec3; 3]) -> f64 {
-    let normal = (b - a).cross(c - a);
-    let inside = [(a, b), (b, c), (c, a)]
-        .into_iter()
-        .all(|(from, to)| (to - from).cross(p - from).dot(normal) >= 0.0);
-    if inside && normal.length() > 0.0 {
-        return (p - a).dot(normal.normalize()).abs();
-    }
-    let to_edge = |from: DVec3, to: DVec3| {
-        let along = to - from;
-        let t = (p - from).dot(along) / along.length_squared().max(1e-30);
-        p.distance(from + along * t.clamp(0.0, 1.0))
-    };
-    to_edge(a, b).min(to_edge(b, c)).min(to_edge(c, a))
-}
 
 /// Triangles by the cells of a grid that they come near to.
 struct Surface {

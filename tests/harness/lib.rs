@@ -4,3 +4,4 @@ pub mod crowd;
 pub mod drawlists;
 pub mod meshes;
 pub mod oracle;
+pub mod solid;
