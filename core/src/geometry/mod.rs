@@ -11,7 +11,9 @@
 //! | [`person`] | a dressed person at rest: skin, eyes, hair and clothes as one mesh |
 //! | [`surface`] | what the parts of a person look like |
 //! | `garment`, `hair`, `cut` | clothes and hair, cut from shells along scalar fields |
-//! | [`skeleton`], [`pose`] | joints, and clips retargeted to a body |
+//! | [`skeleton`], [`pose`] | joints, and clips and poses retargeted to a body |
+//! | [`stance`], `hand` | what joints and fingers are to do |
+//! | [`trunk`] | keeps arms out of trunks |
 //! | [`points`] | poses single vertices in double precision |
 //! | [`shape`] | primitive shapes |
 
@@ -19,6 +21,7 @@ pub mod body;
 mod cut;
 mod garment;
 mod hair;
+mod hand;
 pub mod person;
 pub mod phenotype;
 pub mod points;
@@ -26,4 +29,6 @@ pub mod pose;
 pub mod shape;
 pub mod skeleton;
 mod solve;
+pub mod stance;
 pub mod surface;
+pub mod trunk;
