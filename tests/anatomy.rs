@@ -67,26 +67,26 @@ impl Skin {
         t.map(|v| self.positions[v])
     }
 
-    /// How deep the tip of a limb is in the trunk, metres; 0 where it is outside. The limb's own
-    /// triangles are left out of the surface, which leaves a hole where it is attached.
-    fn depth(&self, trunk: &[usize], limb: &[usize], tip: &[usize]) -> f64 {
-        let own = |t: &&[usize; 3]| !t.iter().any(|&v| limb.contains(&self.joints[v]));
+    /// How deep the tip of a limb is in the body, metres, where it is about the trunk; 0 where it is
+    /// outside. The limbs' own triangles are left out, which leaves holes where they are attached.
+    fn depth(&self, trunk: &[usize], limbs: &[usize], tip: &[usize]) -> f64 {
+        let own = |t: &&[usize; 3]| !t.iter().any(|&v| limbs.contains(&self.joints[v]));
         let around: Vec<_> = self.triangles.iter().filter(own).map(|t| self.corners(t)).collect();
-        let wall: Vec<_> = self
-            .triangles
-            .iter()
-            .filter(|t| t.iter().all(|&v| trunk.contains(&self.joints[v])))
-            .map(|t| self.corners(t))
-            .collect();
-        let low = wall.iter().flatten().fold(DVec3::MAX, |a, p| a.min(*p)) + DEPTH_M;
-        let high = wall.iter().flatten().fold(DVec3::MIN, |a, p| a.max(*p)) - DEPTH_M;
+        let of_trunk = |v: &&usize| trunk.contains(&self.joints[**v]);
+        let all = 0..self.positions.len();
+        let box_of = |joints: fn(DVec3, DVec3) -> DVec3, start: DVec3| {
+            let inner = all.clone().filter(|v| of_trunk(&v)).map(|v| self.positions[v]);
+            inner.fold(start, joints)
+        };
+        let low = box_of(DVec3::min, DVec3::MAX) + DEPTH_M;
+        let high = box_of(DVec3::max, DVec3::MIN) - DEPTH_M;
         let mut deepest = 0.0;
         for (p, joint) in self.positions.iter().zip(&self.joints) {
             let within = p.cmpge(low).all() && p.cmple(high).all();
             if !tip.contains(joint) || !within {
                 continue;
             }
-            let depth = wall.iter().map(|t| distance(*p, *t)).fold(f64::MAX, f64::min);
+            let depth = around.iter().map(|t| distance(*p, *t)).fold(f64::MAX, f64::min);
             if depth > deepest && winding_number(*p, around.iter().copied()) > 0.5 {
                 deepest = depth;
             }
@@ -99,23 +99,25 @@ fn joints(names: &[&str]) -> Vec<usize> {
     names.iter().map(|name| joint_by_name(name).expect("a joint of the skeleton")).collect()
 }
 
-/// The deepest of a person's four limbs.
+/// The deepest of a person's four limbs. Arms are not looked for in arms, nor legs in legs.
 fn deepest(skin: &Skin) -> (f64, String) {
     let trunk = joints(&["Hips", "Spine", "Spine1", "Spine2"]);
+    let of = |names: &[&str]| -> Vec<Vec<usize>> {
+        ["Left", "Right"]
+            .map(|side| names.iter().flat_map(|name| joints(&[&format!("{side}{name}")])).collect())
+            .into()
+    };
+    let mut hand = vec!["ForeArm".to_owned(), "Hand".to_owned()];
+    for finger in ["Thumb", "Index", "Middle", "Ring", "Pinky"] {
+        hand.extend((1..=3).map(|i| format!("Hand{finger}{i}")));
+    }
+    let hand: Vec<&str> = hand.iter().map(String::as_str).collect();
+    let arms = [of(&hand), of(&["Arm"])].concat().concat();
+    let legs = of(&["UpLeg", "Leg", "Foot", "ToeBase"]).concat();
     let mut worst = (0.0, String::new());
-    for side in ["Left", "Right"] {
-        let of = |names: &[&str]| -> Vec<usize> {
-            names.iter().flat_map(|name| joints(&[&format!("{side}{name}")])).collect()
-        };
-        let mut hand = of(&["ForeArm", "Hand"]);
-        for finger in ["Thumb", "Index", "Middle", "Ring", "Pinky"] {
-            hand.extend((1..=3).flat_map(|i| of(&[&format!("Hand{finger}{i}")])));
-        }
-        let arm: Vec<usize> = hand.iter().copied().chain(of(&["Arm"])).collect();
-        let foot = of(&["Leg", "Foot", "ToeBase"]);
-        let leg: Vec<usize> = foot.iter().copied().chain(of(&["UpLeg"])).collect();
-        for (name, limb, tip) in [("arm", &arm, &hand), ("leg", &leg, &foot)] {
-            let depth = skin.depth(&trunk, limb, tip);
+    for (name, limbs, tips) in [("arm", &arms, of(&hand)), ("leg", &legs, of(&["Leg", "Foot"]))] {
+        for (side, tip) in ["left", "right"].into_iter().zip(tips) {
+            let depth = skin.depth(&trunk, limbs, &tip);
             if depth > worst.0 {
                 worst = (depth, format!("{side} {name}"));
             }

@@ -1,9 +1,9 @@
 //! Keeps arms out of trunks.
 //!
 //! Poses and clips know one body; on a heavier one their arms would sink into it. The trunk at rest
-//! is measured as slices with an elliptic outline, each moving with a joint of the spine; arms are
-//! chains of spheres. An arm that is inside is turned out about its shoulder, as little as that
-//! takes.
+//! is measured as slices with an elliptic outline, each moving with a joint of the spine, and so are
+//! the thighs, each moving with its hip; arms are chains of spheres. An arm that is inside is turned
+//! out about its shoulder, as little as that takes.
 
 use glam::{DAffine3, DVec3};
 
@@ -12,54 +12,62 @@ use super::skeleton::{JOINT_COUNT, Limb, Side, trunk};
 use super::stance::turn;
 use crate::library::mesh::SkinVertex;
 
-/// Slices from hips to shoulders.
+/// Slices from hips to shoulders, and along a thigh.
 const SLICES: usize = 12;
 /// An arm may press that far into the trunk: flesh gives way, metres at adult size.
-const SOFT_M: f64 = 0.012;
+const SOFT_M: f64 = 0.007;
+/// A vertex belongs to what has so much of its weight, of 255.
+const MOSTLY: u32 = 150;
 /// Clothes between arm and trunk, metres.
 const CLOTH_M: f64 = 0.006;
 /// An arm is turned by no more than this at a time and in all, degrees.
 const STEP_DEG: f64 = 12.0;
-const STEPS: usize = 8;
+const STEPS: usize = 12;
 
 /// A level cut through a trunk at rest, model space, metres.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Slice {
     half_width_m: f64,
     half_depth_m: f64,
+    center_x_m: f64,
     center_z_m: f64,
 }
 
-/// A trunk at rest, from the hips to the armpits.
+/// Slices of a trunk or a thigh at rest, evenly from a height to another.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Trunk {
+struct Outline {
     low_m: f64,
     high_m: f64,
     slices: [Slice; SLICES],
+}
+
+/// A trunk at rest, from the hips to the armpits, and both thighs.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Trunk {
+    trunk: Outline,
+    /// Left and right.
+    thighs: [Outline; 2],
     /// Of elbow and wrist, metres.
     arm_radius_m: [f64; 2],
 }
 
-impl Trunk {
-    /// Measures a trunk by its skin's vertices at rest.
-    pub(super) fn new(
-        heads_m: &[DVec3; JOINT_COUNT],
+impl Outline {
+    /// Measures what moves mostly with some joints between two heights.
+    fn new(
+        [low_m, high_m]: [f64; 2],
         skin: impl Iterator<Item = (DVec3, SkinVertex)>,
-        arm_radius_m: [f64; 2],
+        belongs: impl Fn(usize) -> bool,
     ) -> Self {
-        let thigh_m = heads_m[Side::Left.joint(Limb::UpLeg)];
-        let armpit_m = heads_m[Side::Left.joint(Limb::Arm)];
-        let (low_m, high_m) = (thigh_m.y, thigh_m.y + 0.8 * (armpit_m.y - thigh_m.y));
-        let mut low = [DVec3::ZERO; SLICES];
-        let mut high = [DVec3::ZERO; SLICES];
-        let of_trunk = |skin: SkinVertex| -> u32 {
-            let weights = skin.joints.iter().zip(&skin.weights);
-            weights.filter(|w| usize::from(*w.0) <= trunk::SPINE2).map(|w| u32::from(*w.1)).sum()
-        };
+        let (mut low, mut high) = ([DVec3::MAX; SLICES], [DVec3::MIN; SLICES]);
         for (p, skin) in skin {
+            let weights = skin.joints.iter().zip(&skin.weights);
+            let own = weights.filter(|w| belongs(usize::from(*w.0)));
             // The halves of the slices next to a vertex count it, so that none stays empty.
             let place = (p.y - low_m) / (high_m - low_m) * (SLICES - 1) as f64;
-            if place < -1.0 || place > SLICES as f64 || of_trunk(skin) < 200 {
+            if place < -1.0
+                || place > SLICES as f64
+                || own.map(|w| u32::from(*w.1)).sum::<u32>() < MOSTLY
+            {
                 continue;
             }
             for slice in [place.floor(), place.floor() + 1.0] {
@@ -69,12 +77,19 @@ impl Trunk {
                 }
             }
         }
-        let slice = |i: usize| Slice {
-            half_width_m: 0.5 * (high[i].x - low[i].x),
-            half_depth_m: 0.5 * (high[i].z - low[i].z),
-            center_z_m: 0.5 * (high[i].z + low[i].z),
+        let slice = |i: usize| {
+            if low[i].x > high[i].x {
+                return Slice::default();
+            }
+            let (half, center) = (0.5 * (high[i] - low[i]), 0.5 * (high[i] + low[i]));
+            Slice {
+                half_width_m: half.x,
+                half_depth_m: half.z,
+                center_x_m: center.x,
+                center_z_m: center.z,
+            }
         };
-        Self { low_m, high_m, slices: std::array::from_fn(slice), arm_radius_m }
+        Self { low_m, high_m, slices: std::array::from_fn(slice) }
     }
 
     /// The outline at a height, between two slices; nothing above and below.
@@ -89,15 +104,16 @@ impl Trunk {
         Some(Slice {
             half_width_m: mix(a.half_width_m, b.half_width_m),
             half_depth_m: mix(a.half_depth_m, b.half_depth_m),
+            center_x_m: mix(a.center_x_m, b.center_x_m),
             center_z_m: mix(a.center_z_m, b.center_z_m),
         })
     }
 
-    /// How far a sphere is inside the trunk at rest, and the way out; model space, metres.
+    /// How far a sphere is inside at rest, and the way out; model space, metres.
     fn depth(&self, center_m: DVec3, radius_m: f64) -> Option<(f64, DVec3)> {
         let slice = self.at(center_m.y)?;
         let (a, b) = (slice.half_width_m + radius_m, slice.half_depth_m + radius_m);
-        let (x, z) = (center_m.x, center_m.z - slice.center_z_m);
+        let (x, z) = (center_m.x - slice.center_x_m, center_m.z - slice.center_z_m);
         let inside = (x / a) * (x / a) + (z / b) * (z / b);
         if inside >= 1.0 || a <= 0.0 || b <= 0.0 {
             return None;
@@ -111,6 +127,30 @@ impl Trunk {
         let root = inside.sqrt();
         let depth_m = (1.0 - root) * root / out.length();
         Some((depth_m, out.normalize()))
+    }
+}
+
+impl Trunk {
+    /// Measures a trunk by its skin's vertices at rest.
+    pub(super) fn new(
+        heads_m: &[DVec3; JOINT_COUNT],
+        skin: impl Iterator<Item = (DVec3, SkinVertex)> + Clone,
+        arm_radius_m: [f64; 2],
+    ) -> Self {
+        let hip_m = heads_m[Side::Left.joint(Limb::UpLeg)].y;
+        let armpit_m = heads_m[Side::Left.joint(Limb::Arm)].y;
+        let heights = [hip_m, hip_m + 0.92 * (armpit_m - hip_m)];
+        let thigh = |side: Side| {
+            let (hip, knee) = (side.joint(Limb::UpLeg), side.joint(Limb::Leg));
+            let (hip_m, knee_m) = (heads_m[hip].y, heads_m[knee].y);
+            let heights = [knee_m + 0.15 * (hip_m - knee_m), hip_m];
+            Outline::new(heights, skin.clone(), |joint| joint == hip)
+        };
+        Self {
+            thighs: Side::BOTH.map(thigh),
+            trunk: Outline::new(heights, skin, |joint| joint <= trunk::SPINE2),
+            arm_radius_m,
+        }
     }
 
     /// Turns both arms of a posed skeleton out of the trunk.
@@ -151,27 +191,40 @@ impl Trunk {
             let joint = side.joint(limb);
             skeleton.joint_m(joint, heads_m[joint])
         };
-        let [elbow_m, wrist_m, finger_m] = [Limb::ForeArm, Limb::Hand, Limb::Middle1].map(at);
+        let [elbow_m, wrist_m, knuckle_m] = [Limb::ForeArm, Limb::Hand, Limb::Middle1].map(at);
         let [elbow_r, wrist_r] = self.arm_radius_m;
-        let mut spheres = [(DVec3::ZERO, 0.0); 7];
+        let fingers = [Limb::Thumb1, Limb::Index1, Limb::Middle1, Limb::Ring1, Limb::Pinky1];
+        let mut spheres = [(DVec3::ZERO, 0.0); 6 + 5];
         for (i, sphere) in spheres.iter_mut().enumerate() {
             let t = i as f64 / 4.0;
             *sphere = match i {
                 0..=4 => (elbow_m.lerp(wrist_m, t), elbow_r + (wrist_r - elbow_r) * t),
                 // The hand is as thick as a third of the wrist's width.
-                5 => (wrist_m.lerp(finger_m, 0.6), wrist_r * 0.6),
-                _ => (wrist_m.lerp(finger_m, 1.2), wrist_r * 0.5),
+                5 => (wrist_m.lerp(knuckle_m, 0.8), wrist_r * 0.6),
+                _ => {
+                    // The last segment of a finger is about as long as the one before.
+                    let last = side.joint(fingers[i - 6]) + 2;
+                    let of = |joint: usize| skeleton.joint_m(joint, heads_m[joint]);
+                    (of(last) * 2.0 - of(last - 1), wrist_r * 0.3)
+                }
             };
         }
         let soft_m = SOFT_M - CLOTH_M;
         let mut worst: Option<(f64, DVec3, DVec3)> = None;
         for (center_m, radius_m) in spheres {
-            let joint = self.nearest(heads_m, skeleton, center_m);
-            let model_from_rest = &skeleton.model_from_rest[joint];
-            let in_rest = model_from_rest.inverse().transform_point3(center_m);
-            let Some((depth_m, out)) = self.depth(in_rest, radius_m - soft_m) else { continue };
-            if depth_m > 1e-4 && worst.is_none_or(|w| depth_m > w.0) {
-                worst = Some((depth_m, center_m, model_from_rest.transform_vector3(out)));
+            let thighs = Side::BOTH.into_iter().zip(&self.thighs);
+            let solids = thighs
+                .map(|(side, thigh)| (side.joint(Limb::UpLeg), thigh))
+                .chain([(self.nearest(heads_m, skeleton, center_m), &self.trunk)]);
+            for (joint, outline) in solids {
+                let model_from_rest = &skeleton.model_from_rest[joint];
+                let in_rest = model_from_rest.inverse().transform_point3(center_m);
+                let Some((depth_m, out)) = outline.depth(in_rest, radius_m - soft_m) else {
+                    continue;
+                };
+                if depth_m > 1e-4 && worst.is_none_or(|w| depth_m > w.0) {
+                    worst = Some((depth_m, center_m, model_from_rest.transform_vector3(out)));
+                }
             }
         }
         worst
@@ -236,12 +289,12 @@ mod tests {
             (DVec3::new(0.0, 0.2, 0.02 + 0.15), 0.03),
             (DVec3::new(0.0, 0.2, 0.02 - 0.15), 0.03),
         ] {
-            let (found_m, out) = trunk.depth(at, 0.03).unwrap();
+            let (found_m, out) = trunk.trunk.depth(at, 0.03).unwrap();
             assert!((found_m - depth_m).abs() < 0.003, "{at} {found_m}");
             assert!(out.dot(at - DVec3::new(0.0, 0.2, 0.02)) > 0.0);
         }
-        assert!(trunk.depth(DVec3::new(0.24, 0.2, 0.02), 0.03).is_none());
-        assert!(trunk.depth(DVec3::new(0.0, 0.9, 0.0), 0.03).is_none());
+        assert!(trunk.trunk.depth(DVec3::new(0.24, 0.2, 0.02), 0.03).is_none());
+        assert!(trunk.trunk.depth(DVec3::new(0.0, 0.9, 0.0), 0.03).is_none());
     }
 
     #[test]
