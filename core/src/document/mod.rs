@@ -33,7 +33,7 @@ pub use param::{
     Auto, AutoWord, Beta, Binomial, Chance, Choice, Distribution, Flag, Lognormal, Normal, Param,
     Triangular, Weighted,
 };
-pub use people::{Ancestry, Body, Bottom, Look, Origin, People, Pose, Shoes, Top, Wardrobe};
+pub use people::{Ancestry, Blend, Body, Bottom, Look, Origin, People, Pose, Shoes, Top, Wardrobe};
 pub use place::{
     Background, Floor, Grid, Ground, Materials, Occluders, Placement, PoissonDisk, Row, Wall,
 };
@@ -42,6 +42,9 @@ pub use vector::{
     BoxRegion, Color, ColorLaw, GridRegion, JointRotation, Region, Rotation, RotationLaw, Round,
     Vector,
 };
+
+/// Words of the config that other layers share.
+pub use crate::scene::HandShape;
 
 /// The version of the config that this program writes.
 pub const VERSION: u32 = 1;

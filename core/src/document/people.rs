@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use super::place::PoissonDisk;
 use super::{Auto, Choice, Color, ColorLaw, Flag, Param, Placement, Rotation};
-use crate::scene::{BottomKind, HairStyle, Sex};
+use crate::scene::{BottomKind, HairStyle, HandShape, Sex};
 
 /// Everybody in the picture.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -301,27 +301,63 @@ fn some_pattern(share: f64) -> Choice<String> {
     Choice::of([("none".to_owned(), 1.0 - share), ("any".to_owned(), share)])
 }
 
-/// A frame of a motion clip.
+/// What people do: frames of motion clips, and poses.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Pose {
     /// Where false, every parameter takes its median.
     pub enabled: bool,
-    /// Clip id; `"any"` for one of all.
+    /// Id of a motion clip (`"walk"`) or of a pose (`"pose/sitting_chair"`); `"any_clip"`,
+    /// `"any_pose"` or `"any"` for one of all.
     pub clip: Choice<String>,
-    /// Position in the clip: 0 its first frame .. 1 its last.
+    /// Position in the clip: 0 its first frame .. 1 its last. Poses have none.
     pub phase: Param,
     /// Whether left and right are exchanged.
     pub mirrored: Flag,
+    /// How far joints stray from the clip or the pose, each for itself: 0 not at all .. 1 by a
+    /// standard deviation of 3 to 14 degrees. No joint goes beyond what human joints can do.
+    pub variation: Param,
+    /// A second clip or pose that is mixed in.
+    pub blend: Blend,
+    /// What fingers do; `"auto"` leaves it to the pose and draws it for clips, mostly relaxed.
+    pub hands: Auto<Choice<HandShape>>,
+    /// How far the head is turned beyond the pose: to the left, and up.
+    pub gaze_deg: [Param; 2],
 }
 
 impl Default for Pose {
     fn default() -> Self {
         Self {
             enabled: true,
-            clip: Choice::Always("any".to_owned()),
+            clip: Choice::Always("any_clip".to_owned()),
             phase: Param::uniform(0.0, 1.0),
             mirrored: Flag::with_probability(0.5),
+            variation: Param::Constant(0.0),
+            blend: Blend::default(),
+            hands: Auto::default(),
+            gaze_deg: [Param::Constant(0.0), Param::Constant(0.0)],
+        }
+    }
+}
+
+/// A second clip or pose that is mixed in.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+pub struct Blend {
+    /// Id, as in `clip`.
+    pub clip: Choice<String>,
+    /// Position in the clip: 0 its first frame .. 1 its last.
+    pub phase: Param,
+    /// 0 the first alone .. 1 the second alone.
+    pub share: Param,
+}
+
+impl Default for Blend {
+    fn default() -> Self {
+        Self {
+            clip: Choice::Always("any_clip".to_owned()),
+            phase: Param::uniform(0.0, 1.0),
+            share: Param::Constant(0.0),
         }
     }
 }

@@ -243,10 +243,23 @@ fn people(c: &mut Check, people: &People) {
     body(c, &people.body);
     look(c, &people.look);
     wardrobe(c, &people.wardrobe);
-    let pose: &Pose = &people.pose;
+    pose(c, &people.pose);
+}
+
+fn pose(c: &mut Check, pose: &Pose) {
     c.ids("people.pose.clip", &pose.clip);
     c.param("people.pose.phase", &pose.phase, SHARE);
     c.flag("people.pose.mirrored", &pose.mirrored);
+    c.param("people.pose.variation", &pose.variation, SHARE);
+    c.ids("people.pose.blend.clip", &pose.blend.clip);
+    c.param("people.pose.blend.phase", &pose.blend.phase, SHARE);
+    c.param("people.pose.blend.share", &pose.blend.share, SHARE);
+    if let Auto::Given(hands) = &pose.hands {
+        c.choice("people.pose.hands", hands);
+    }
+    for (i, turn) in pose.gaze_deg.iter().enumerate() {
+        c.param(&format!("people.pose.gaze_deg[{i}]"), turn, Range::from_to(-180.0, 180.0));
+    }
 }
 
 fn body(c: &mut Check, body: &Body) {

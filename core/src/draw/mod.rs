@@ -32,6 +32,7 @@ use crate::base::space::exposure_from_ev100;
 use crate::library::Library;
 use crate::library::clip::ClipError;
 use crate::library::figure::FigureError;
+use crate::library::pose::PoseError;
 use crate::library::textures::TextureError;
 use crate::scene::{Camera, Scene};
 use frustum::Frustum;
@@ -91,6 +92,9 @@ pub enum DrawError {
     /// The scene names a clip that the library does not hold.
     #[error(transparent)]
     Clip(#[from] ClipError),
+    /// The scene names a pose that the library does not hold.
+    #[error(transparent)]
+    Pose(#[from] PoseError),
 }
 
 /// Draws a scene. What `cast` holds is reused; the result does not depend on it.

@@ -15,10 +15,12 @@ use crate::geometry::person::{Dressed, MeshKey};
 use crate::geometry::points;
 use crate::geometry::pose::PosedSkeleton;
 use crate::geometry::skeleton::JOINT_COUNT;
+use crate::geometry::stance::Stance;
 use crate::geometry::surface::surface;
 use crate::library::Library;
 use crate::library::figure::LOD_COUNT;
-use crate::scene::Person;
+use crate::library::pose::PREFIX;
+use crate::scene::{Person, Pose, PoseBlend};
 
 /// How much of a limb's thickness may lie in front of a keypoint before it counts as hidden: limbs
 /// are seen at a slant, and clothes stand off.
@@ -73,11 +75,9 @@ fn pose_one<'a>(
     cast: &Cast,
     view_from_world: &DAffine3,
 ) -> Result<Posed<'a>, DrawError> {
-    let clip = library.clips.get(&person.pose.clip)?;
     let key = MeshKey::new(person);
     let body = cast.body(&library.figure, key, person)?;
-    let frame = clip.sample(person.pose.phase);
-    let mut skeleton = PosedSkeleton::new(&body.heads_m, &frame, person.pose.mirrored);
+    let mut skeleton = skeleton(&person.pose, library, &body.heads_m)?;
     skeleton.ground(body.ground.iter().map(|p| (p.rest_m, p.skin)));
     let view_from_model = *view_from_world * world_from_model(&person.placement);
     let scale = person.placement.scale.abs().max_element();
@@ -92,6 +92,35 @@ fn pose_one<'a>(
         view_from_model,
         scale,
     })
+}
+
+/// Where a pose takes a person's joints; the height is not settled yet.
+fn skeleton(
+    pose: &Pose,
+    library: &Library,
+    heads_m: &[DVec3; JOINT_COUNT],
+) -> Result<PosedSkeleton, DrawError> {
+    let is_plain =
+        pose.blend.is_none() && pose.variation_deg.is_empty() && pose.gaze_deg == [0.0; 2];
+    if is_plain && !pose.clip.starts_with(PREFIX) {
+        let frame = library.clips.get(&pose.clip)?.sample(pose.phase);
+        let hands = pose.hands.unwrap_or_default();
+        return Ok(PosedSkeleton::of_clip(heads_m, &frame, hands, pose.mirrored));
+    }
+    let stance = |id: &str, phase: f64| -> Result<Stance, DrawError> {
+        if id.starts_with(PREFIX) {
+            return Ok(Stance::of_pose(library.poses.get(id)?));
+        }
+        Ok(Stance::of_clip(&library.clips.get(id)?.sample(phase)))
+    };
+    let mut all = stance(&pose.clip, pose.phase)?;
+    if let Some(PoseBlend { clip, phase, share }) = &pose.blend {
+        all = all.blended(&stance(clip, *phase)?, *share);
+    }
+    let mut all = all.varied(&pose.variation_deg).looking(pose.gaze_deg);
+    all.hands = pose.hands.unwrap_or(all.hands);
+    let all = if pose.mirrored { all.mirrored() } else { all };
+    Ok(PosedSkeleton::of_stance(heads_m, &all))
 }
 
 /// Centre and radius of a sphere round the posed, dressed body, model space.

@@ -10,7 +10,8 @@
 //! | [`person`] | a dressed person at rest: skin, eyes, hair and clothes as one mesh |
 //! | [`surface`] | what the parts of a person look like |
 //! | `garment`, `hair`, `cut` | clothes and hair, cut from shells along scalar fields |
-//! | [`skeleton`], [`pose`] | joints, and clips retargeted to a body |
+//! | [`skeleton`], [`pose`] | joints, and clips and poses retargeted to a body |
+//! | [`stance`], `hand` | what joints and fingers are to do |
 //! | [`points`] | poses single vertices in double precision |
 //! | [`shape`] | primitive shapes |
 
@@ -18,10 +19,12 @@ pub mod body;
 mod cut;
 mod garment;
 mod hair;
+mod hand;
 pub mod person;
 pub mod phenotype;
 pub mod points;
 pub mod pose;
 pub mod shape;
 pub mod skeleton;
+pub mod stance;
 pub mod surface;

@@ -340,7 +340,7 @@ mod tests {
                 },
                 shoes: Shoes { color: [0.05; 3] },
             },
-            pose: Pose { clip: String::new(), phase: 0.0, mirrored: false },
+            pose: Pose::default(),
         }
     }
 

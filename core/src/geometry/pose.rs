@@ -1,4 +1,4 @@
-//! A clip's frame and a person's own joints -> where each joint of that person goes.
+//! A clip's frame or a stance and a person's own joints -> where each joint of that person goes.
 //!
 //! The clip turns thirteen bodies of a figure that stands upright with hanging arms; a person at
 //! rest stands with arms and legs apart, each a little differently. Per person, align rotations
@@ -8,19 +8,17 @@
 
 use glam::{DAffine3, DMat3, DQuat, DVec3};
 
+use super::hand;
 use super::skeleton::{JOINT_COUNT, Limb, PARENTS, Side, trunk};
+use super::stance::{BallJoint, Stance, euler_xzy, set_ball, turn};
 use crate::library::clip::{ClipFrame, SourceBody};
 use crate::library::mesh::SkinVertex;
+use crate::library::pose::Foot;
+use crate::library::pose::angle::{Angles, Limb as Angle, SIDE};
+use crate::scene::HandShape;
 
-/// Curl of the three segments of thumb, index, middle, ring and little finger in a relaxed hand,
-/// degrees beyond the rest pose, whose fingers are nearly straight.
-const RELAXED_CURL_DEG: [[f64; 3]; 5] = [
-    [6.0, 10.0, 12.0],
-    [16.0, 20.0, 12.0],
-    [20.0, 26.0, 15.0],
-    [23.0, 29.0, 17.0],
-    [24.0, 31.0, 19.0],
-];
+/// A leg is not stretched farther than this share of its length.
+const STRETCHED: f64 = 0.9995;
 
 /// A person's joints, posed.
 #[derive(Clone, Debug, PartialEq)]
@@ -34,13 +32,36 @@ impl PosedSkeleton {
     pub const REST: Self = Self { model_from_rest: [DAffine3::IDENTITY; JOINT_COUNT] };
 
     /// The pose of a clip's frame on the person whose joints stand at `rest_joints_m` at rest
-    /// (model space). The hips keep their place over the ground and their height; [`Self::ground`]
-    /// settles the height. `mirrored` exchanges left and right of the clip before it meets
-    /// the person.
+    /// (model space), with relaxed hands. The hips keep their place over the ground and their
+    /// height; [`Self::ground`] settles the height. `mirrored` exchanges left and right of the
+    /// clip before it meets the person.
     #[must_use]
     pub fn new(rest_joints_m: &[DVec3; JOINT_COUNT], frame: &ClipFrame, mirrored: bool) -> Self {
-        let frame = if mirrored { frame.mirrored() } else { *frame };
-        let rotations = joint_rotations(rest_joints_m, &frame);
+        Self::of_clip(rest_joints_m, frame, [HandShape::Relaxed; 2], mirrored)
+    }
+
+    /// The same with other hands, left and right; they change places too when mirrored.
+    #[must_use]
+    pub fn of_clip(
+        rest_joints_m: &[DVec3; JOINT_COUNT],
+        frame: &ClipFrame,
+        hands: [HandShape; 2],
+        mirrored: bool,
+    ) -> Self {
+        let [left, right] = hands;
+        let (frame, hands) =
+            if mirrored { (frame.mirrored(), [right, left]) } else { (*frame, hands) };
+        Self::rotated(rest_joints_m, &clip_rotations(rest_joints_m, &frame, hands))
+    }
+
+    /// A stance of the person whose joints stand at `rest_joints_m` at rest, as for clips.
+    #[must_use]
+    pub fn of_stance(rest_joints_m: &[DVec3; JOINT_COUNT], stance: &Stance) -> Self {
+        Self::rotated(rest_joints_m, &stance_rotations(rest_joints_m, stance))
+    }
+
+    /// Joints turned away from rest, model space.
+    fn rotated(rest_joints_m: &[DVec3; JOINT_COUNT], rotations: &[DQuat; JOINT_COUNT]) -> Self {
         let mut posed_m = [DVec3::ZERO; JOINT_COUNT];
         let mut model_from_rest = [DAffine3::IDENTITY; JOINT_COUNT];
         for joint in 0..JOINT_COUNT {
@@ -96,7 +117,11 @@ impl PosedSkeleton {
 }
 
 /// Model-space rotation of each joint away from rest.
-fn joint_rotations(rest_m: &[DVec3; JOINT_COUNT], frame: &ClipFrame) -> [DQuat; JOINT_COUNT] {
+fn clip_rotations(
+    rest_m: &[DVec3; JOINT_COUNT],
+    frame: &ClipFrame,
+    hands: [HandShape; 2],
+) -> [DQuat; JOINT_COUNT] {
     use SourceBody as B;
     let mut rotations = [DQuat::IDENTITY; JOINT_COUNT];
     let (root, chest, neck) = (frame.get(B::Root), frame.get(B::Chest), frame.get(B::Neck));
@@ -126,9 +151,167 @@ fn joint_rotations(rest_m: &[DVec3; JOINT_COUNT], frame: &ClipFrame) -> [DQuat; 
         set(Limb::Arm, shoulder * align.arm);
         set(Limb::ForeArm, elbow * align.fore_arm);
         set(Limb::Hand, elbow * align.fore_arm);
-        curl_fingers(rest_m, side, &mut rotations);
+        hand::bend(rest_m, side, hands[side as usize], &mut rotations);
     }
     rotations
+}
+
+/// The same for a stance: angles are applied to the source's rest, and align rotations come last.
+fn stance_rotations(rest_m: &[DVec3; JOINT_COUNT], stance: &Stance) -> [DQuat; JOINT_COUNT] {
+    let mut rotations = [DQuat::IDENTITY; JOINT_COUNT];
+    rotations[trunk::HIPS] = stance.root;
+    for (joint, part) in [
+        (trunk::SPINE, BallJoint::Spine),
+        (trunk::SPINE1, BallJoint::Spine),
+        (trunk::SPINE2, BallJoint::Spine),
+        (trunk::NECK, BallJoint::Head),
+        (trunk::HEAD, BallJoint::Head),
+    ] {
+        rotations[joint] = (rotations[joint - 1] * stance.joint(part)).normalize();
+    }
+    let legs = legs(rest_m, stance);
+    for side in Side::BOTH {
+        let align = LimbAlign::new(rest_m, side);
+        bend_arm(rest_m, stance, side, &align, &mut rotations);
+        let Leg { thigh, shank, .. } = legs[side as usize];
+        let foot = foot(stance, side, shank);
+        let toe = foot * turn(DVec3::NEG_X, stance.limb(side, Angle::ToeExtension));
+        let mut set = |limb: Limb, rotation: DQuat| {
+            rotations[side.joint(limb)] = rotation.normalize();
+        };
+        set(Limb::UpLeg, thigh * align.up_leg);
+        set(Limb::Leg, shank * align.leg);
+        set(Limb::Foot, foot * align.foot);
+        set(Limb::ToeBase, toe * align.foot);
+    }
+    rotations
+}
+
+/// Sets the joints from the collar bone to the fingers; the chest is set already.
+fn bend_arm(
+    rest_m: &[DVec3; JOINT_COUNT],
+    stance: &Stance,
+    side: Side,
+    align: &LimbAlign,
+    rotations: &mut [DQuat; JOINT_COUNT],
+) {
+    let out = side.sign();
+    let deg = |angle| stance.limb(side, angle);
+    let chest = rotations[trunk::SPINE2];
+    let collar = turn(DVec3::Z, out * deg(Angle::ClavicleElevation))
+        * turn(DVec3::Y, -out * deg(Angle::ClavicleProtraction));
+    let shoulder = chest * stance.joint(BallJoint::Shoulder(side as usize));
+    let elbow = shoulder * turn(DVec3::NEG_X, deg(Angle::ElbowFlexion));
+    // There is no joint between elbow and wrist: each takes half of the forearm's turn.
+    let half = turn(DVec3::Y, -0.5 * out * deg(Angle::ForearmPronation));
+    let fore_arm = elbow * half;
+    let hand = fore_arm
+        * half
+        * turn(DVec3::Z, -out * deg(Angle::WristFlexion))
+        * turn(DVec3::X, deg(Angle::WristDeviation));
+    let mut set = |limb: Limb, rotation: DQuat| {
+        rotations[side.joint(limb)] = rotation.normalize();
+    };
+    set(Limb::Shoulder, chest * collar);
+    set(Limb::Arm, shoulder * align.arm);
+    set(Limb::ForeArm, fore_arm * align.fore_arm);
+    set(Limb::Hand, hand * align.fore_arm);
+    hand::bend(rest_m, side, stance.hands[side as usize], rotations);
+}
+
+/// A leg in model space, as if it hung straight down at rest.
+#[derive(Clone, Copy, Debug)]
+struct Leg {
+    hip_m: DVec3,
+    thigh: DQuat,
+    shank: DQuat,
+    thigh_m: f64,
+    shank_m: f64,
+}
+
+impl Leg {
+    fn new(rest_m: &[DVec3; JOINT_COUNT], stance: &Stance, side: Side) -> Self {
+        let at = |limb: Limb| rest_m[side.joint(limb)];
+        let thigh = stance.root * stance.joint(BallJoint::Hip(side as usize));
+        Self {
+            hip_m: stance.root * (at(Limb::UpLeg) - rest_m[trunk::HIPS]),
+            thigh,
+            shank: thigh * turn(DVec3::X, stance.limb(side, Angle::KneeFlexion)),
+            thigh_m: at(Limb::UpLeg).distance(at(Limb::Leg)),
+            shank_m: at(Limb::Leg).distance(at(Limb::Foot)),
+        }
+    }
+
+    fn ankle_m(&self) -> DVec3 {
+        self.hip_m
+            + self.thigh * (DVec3::NEG_Y * self.thigh_m)
+            + self.shank * (DVec3::NEG_Y * self.shank_m)
+    }
+
+    /// Height of the lowest point right below or above the ankle that the leg can reach.
+    fn lowest_m(&self) -> f64 {
+        let aside = self.ankle_m() - self.hip_m;
+        let length = (self.thigh_m + self.shank_m) * STRETCHED;
+        let down = length * length - aside.x * aside.x - aside.z * aside.z;
+        self.hip_m.y - down.max(0.0).sqrt()
+    }
+
+    /// The same leg with its ankle at another height: the knee bends, and the whole leg turns the
+    /// shortest way.
+    fn with_ankle_at(&self, y_m: f64) -> Self {
+        let ankle_m = self.ankle_m();
+        let target = DVec3::new(ankle_m.x, y_m, ankle_m.z) - self.hip_m;
+        let (a, b) = (self.thigh_m, self.shank_m);
+        let cos = (target.length_squared() - a * a - b * b) / (2.0 * a * b);
+        let knee = libm::acos(cos.clamp(-1.0, 1.0)).to_degrees();
+        let shank = self.thigh * turn(DVec3::X, knee);
+        let bent = Self { shank, ..*self };
+        let way = shortest_arc(bent.ankle_m() - self.hip_m, target.normalize_or_zero());
+        Self { thigh: (way * self.thigh).normalize(), shank: (way * shank).normalize(), ..*self }
+    }
+
+    /// Whether hip and knee are within their limits, given a pelvis.
+    fn is_human(&self, root: DQuat, side: Side) -> bool {
+        let mut angles = Angles::default();
+        set_ball(BallJoint::Hip(side as usize), &mut angles, root.inverse() * self.thigh);
+        let knee = euler_xzy(self.thigh.inverse() * self.shank)[0].to_degrees();
+        angles.side_deg[side as usize][Angle::KneeFlexion as usize] = knee;
+        angles.side_deg[side as usize]
+            .iter()
+            .zip(&SIDE)
+            .all(|(deg, reach)| (reach.limits_deg[0]..=reach.limits_deg[1]).contains(deg))
+    }
+}
+
+/// Both legs. Where both feet are planted, they stand on one ground: that of the lower one, or of
+/// the lowest that the other can reach.
+fn legs(rest_m: &[DVec3; JOINT_COUNT], stance: &Stance) -> [Leg; 2] {
+    let legs = Side::BOTH.map(|side| Leg::new(rest_m, stance, side));
+    if stance.feet != [Foot::Planted; 2] {
+        return legs;
+    }
+    let lower = legs[0].ankle_m().y.min(legs[1].ankle_m().y);
+    let ground = lower.max(legs[0].lowest_m()).max(legs[1].lowest_m());
+    let planted = legs.map(|leg| leg.with_ankle_at(ground));
+    let human = Side::BOTH.iter().all(|s| planted[*s as usize].is_human(stance.root, *s));
+    if human { planted } else { legs }
+}
+
+/// Model-space rotation of a foot, given its shank's.
+fn foot(stance: &Stance, side: Side, shank: DQuat) -> DQuat {
+    let joint = BallJoint::Ankle(side as usize);
+    if stance.feet[side as usize] == Foot::Free {
+        return shank * stance.joint(joint);
+    }
+    // Level, with the axis of the ankle's hinge above that of the shank.
+    let aside = shank * DVec3::X;
+    let heading = shortest_arc(DVec3::new(aside.x, 0.0, aside.z), DVec3::X).inverse();
+    let mut level = stance.clone();
+    set_ball(joint, &mut level.angles, shank.inverse() * heading);
+    for (deg, reach) in level.angles.side_deg[side as usize].iter_mut().zip(&SIDE) {
+        *deg = deg.clamp(reach.limits_deg[0], reach.limits_deg[1]);
+    }
+    shank * level.joint(joint)
 }
 
 /// Rotations that take one side's limbs from the person's rest to the source's rest.
@@ -155,34 +338,6 @@ impl LimbAlign {
             foot: shortest_arc(DVec3::new(foot.x, 0.0, foot.z), DVec3::Z),
             arm,
             fore_arm,
-        }
-    }
-}
-
-/// Bends the fingers of one hand towards its palm; the hand's own rotation is set already.
-fn curl_fingers(rest_m: &[DVec3; JOINT_COUNT], side: Side, rotations: &mut [DQuat; JOINT_COUNT]) {
-    let at = |limb: Limb| rest_m[side.joint(limb)];
-    let hand = at(Limb::Hand);
-    // Out of the palm: index, wrist and little finger lie in the plane of the hand.
-    let across = (at(Limb::Pinky1) - hand).cross(at(Limb::Index1) - hand);
-    let palm = match side {
-        Side::Left => across,
-        Side::Right => -across,
-    };
-    let fingers = [Limb::Thumb1, Limb::Index1, Limb::Middle1, Limb::Ring1, Limb::Pinky1];
-    for (finger, curl_deg) in fingers.into_iter().zip(RELAXED_CURL_DEG) {
-        let first = side.joint(finger);
-        let direction = rest_m[first + 1] - rest_m[first];
-        let axis = direction.cross(palm).normalize_or_zero();
-        let mut rotation = rotations[side.joint(Limb::Hand)];
-        for (segment, degrees) in curl_deg.into_iter().enumerate() {
-            let half = degrees.to_radians() * 0.5;
-            let (sin, cos) = (libm::sin(half), libm::cos(half));
-            // Without an axis (joints that coincide) the finger stays straight.
-            let cos = if axis == DVec3::ZERO { 1.0 } else { cos };
-            let curl = DQuat::from_xyzw(axis.x * sin, axis.y * sin, axis.z * sin, cos);
-            rotation = (rotation * curl).normalize();
-            rotations[first + segment] = rotation;
         }
     }
 }

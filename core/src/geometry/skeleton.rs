@@ -111,6 +111,15 @@ impl Side {
     /// Both sides.
     pub const BOTH: [Self; 2] = [Self::Left, Self::Right];
 
+    /// 1 for the left, which is towards +X, and -1 for the right.
+    #[must_use]
+    pub const fn sign(self) -> f64 {
+        match self {
+            Self::Left => 1.0,
+            Self::Right => -1.0,
+        }
+    }
+
     /// Number of a joint on this side.
     #[must_use]
     pub const fn joint(self, limb: Limb) -> usize {

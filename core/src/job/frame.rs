@@ -14,7 +14,7 @@ use crate::label;
 use crate::library::Library;
 use crate::library::textures::TextureGroup;
 use crate::plan::{Frame, Outputs, Pass, PassPlan, SceneFacts, StageTimes};
-use crate::sampling::{self, Catalogue, SampleError, Sampler};
+use crate::sampling::{self, Activity, Catalogue, SampleError, Sampler};
 use crate::scene::Scene;
 
 /// A frame that cannot be made.
@@ -116,9 +116,12 @@ impl Studio {
 /// The names of what a library holds.
 #[must_use]
 pub fn catalogue(library: &Library) -> Catalogue {
+    let activity =
+        |id: &str, activity: &str| Activity { id: id.to_owned(), activity: activity.to_owned() };
     Catalogue {
         face_targets: library.figure.face_shape_names().map(str::to_owned).collect(),
-        clips: library.clips.ids().map(str::to_owned).collect(),
+        clips: library.clips.all().iter().map(|c| activity(&c.id, c.activity())).collect(),
+        poses: library.poses.all().iter().map(|p| activity(&p.id, &p.activity)).collect(),
         textures: library.surface_textures(),
         cloth_patterns: library.textures.ids(TextureGroup::Cloth).to_vec(),
     }

@@ -6,6 +6,7 @@
 
 use serde::Serialize;
 
+use crate::library::pose::PREFIX;
 use crate::scene::{BottomKind, Camera, Person, Role, Sex};
 
 /// Number of keypoints of a person: the COCO-17 set.
@@ -221,8 +222,17 @@ pub struct PersonMeta {
     pub mass_kg: Option<f64>,
     /// Names of the garments from top to bottom.
     pub garments: Vec<String>,
-    /// Motion clip id.
+    /// Who of the people that recur over frames it is, if anybody does.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub identity: Option<u32>,
+    /// What the person does, such as `walking`.
+    pub activity: String,
+    /// Motion clip id; empty where the person takes a pose.
+    #[serde(skip_serializing_if = "String::is_empty")]
     pub clip: String,
+    /// Pose id, such as `pose/sitting_chair`; empty where the person follows a clip.
+    #[serde(skip_serializing_if = "String::is_empty")]
+    pub pose: String,
     /// Position in the clip, 0..1.
     pub phase: f64,
     /// Left and right exchanged.
@@ -237,13 +247,22 @@ impl PersonMeta {
             BottomKind::Trousers => "trousers",
             BottomKind::Shorts => "shorts",
         };
+        let id = &person.pose.clip;
+        let (clip, pose) = if id.starts_with(PREFIX) {
+            (String::new(), id.clone())
+        } else {
+            (id.clone(), String::new())
+        };
         Self {
             age_years: person.body.age_years,
             sex: person.body.sex,
             stature_m: person.body.stature_m,
             mass_kg,
             garments: ["top", bottom, "shoes"].map(String::from).to_vec(),
-            clip: person.pose.clip.clone(),
+            identity: person.identity,
+            activity: person.pose.activity.clone(),
+            clip,
+            pose,
             phase: person.pose.phase,
             mirrored: person.pose.mirrored,
         }

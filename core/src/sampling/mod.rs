@@ -20,6 +20,7 @@ mod outfit;
 mod people;
 mod place;
 mod poisson_disk;
+mod pose;
 mod quantile;
 mod value;
 
@@ -32,11 +33,22 @@ pub struct Catalogue {
     /// Local face targets of the figure. Those named `l-...` and `r-...` alike are one shape.
     pub face_targets: Vec<String>,
     /// Motion clips.
-    pub clips: Vec<String>,
+    pub clips: Vec<Activity>,
+    /// Poses.
+    pub poses: Vec<Activity>,
     /// Textures for walls, floors and occluders.
     pub textures: Vec<String>,
     /// Patterns of cloth.
     pub cloth_patterns: Vec<String>,
+}
+
+/// A clip or a pose by name.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Activity {
+    /// Its id in the library.
+    pub id: String,
+    /// What a person does who follows it.
+    pub activity: String,
 }
 
 /// Why a frame could not be sampled.
@@ -139,7 +151,6 @@ pub fn check_assets(document: &Document, catalogue: &Catalogue) -> Vec<Problem> 
     let (occluders, people) = (&document.occluders, &document.people);
     let textures = ("texture", &catalogue.textures, true);
     let patterns = ("cloth pattern", &catalogue.cloth_patterns, true);
-    let clips = ("clip", &catalogue.clips, false);
     let (top, bottom) = (&people.wardrobe.top, &people.wardrobe.bottom);
     let all = [
         (wall.enabled, "background.wall.texture", &wall.texture, textures),
@@ -147,7 +158,6 @@ pub fn check_assets(document: &Document, catalogue: &Catalogue) -> Vec<Problem> 
         (occluders.enabled, "occluders.texture", &occluders.texture, textures),
         (people.enabled, "people.wardrobe.top.pattern", &top.pattern, patterns),
         (people.enabled, "people.wardrobe.bottom.pattern", &bottom.pattern, patterns),
-        (people.enabled, "people.pose.clip", &people.pose.clip, clips),
     ];
     let mut problems = Vec::new();
     for (enabled, path, choice, (kind, known, none_allowed)) in all {
@@ -155,7 +165,44 @@ pub fn check_assets(document: &Document, catalogue: &Catalogue) -> Vec<Problem> 
             check_choice(path, choice, kind, known, none_allowed, &mut problems);
         }
     }
+    if people.enabled {
+        check_poses("people.pose.clip", &people.pose.clip, catalogue, &mut problems);
+        // What has no share is never looked up.
+        if people.pose.blend.share.bounds().1 > 0.0 {
+            let second = &people.pose.blend.clip;
+            check_poses("people.pose.blend.clip", second, catalogue, &mut problems);
+        }
+    }
     problems
+}
+
+/// Clips and poses share one set of ids.
+fn check_poses(
+    path: &str,
+    choice: &Choice<String>,
+    catalogue: &Catalogue,
+    problems: &mut Vec<Problem>,
+) {
+    let (clips, poses) = (&catalogue.clips, &catalogue.poses);
+    for id in choice.possible() {
+        let (kind, there) = match id.as_str() {
+            "any" => ("clip or pose", !clips.is_empty() || !poses.is_empty()),
+            "any_clip" => ("clip", !clips.is_empty()),
+            "any_pose" => ("pose", !poses.is_empty()),
+            id => {
+                let mut known = clips.iter().chain(poses).map(|a| a.id.as_str());
+                if !known.clone().any(|k| k == id) {
+                    let problem = Problem::new(path, format!("there is no clip or pose \"{id}\""));
+                    problems.push(problem.did_you_mean(id, &mut known));
+                }
+                continue;
+            }
+        };
+        if !there {
+            let message = format!("\"{id}\" needs at least one {kind}: the library holds none");
+            problems.push(Problem::new(path, message));
+        }
+    }
 }
 
 fn check_choice(

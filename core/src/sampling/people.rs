@@ -2,14 +2,13 @@
 
 use glam::DVec3;
 
-use super::background::asset;
 use super::look::FaceShape;
 use super::place::{PEOPLE, places};
-use super::value::{flag, number, rotation};
-use super::{Catalogue, body, keys, look, outfit};
+use super::value::{number, rotation};
+use super::{Catalogue, body, keys, look, outfit, pose};
 use crate::base::rng::{Draw, Draws, Key};
 use crate::document;
-use crate::scene::{Body, Person, Placement, Pose, Sex};
+use crate::scene::{Body, Person, Placement, Sex};
 
 pub(super) fn people(
     people: &document::People,
@@ -41,7 +40,7 @@ pub(super) fn people(
             },
             look: look::look(&people.look, faces, traits, lasting),
             outfit: outfit::outfit(&people.wardrobe, &catalogue.cloth_patterns, lasting, here),
-            pose: pose(&people.pose, &catalogue.clips, here),
+            pose: pose::pose(&people.pose, catalogue, here),
             body,
         }
     };
@@ -116,15 +115,6 @@ pub(super) struct PersonTraits {
 impl PersonTraits {
     fn new(body: &Body) -> Self {
         Self { sex: body.sex, age_years: body.age_years, ancestry: body.ancestry }
-    }
-}
-
-fn pose(pose: &document::Pose, clips: &[String], source: Source) -> Pose {
-    let source = source.random_if(pose.enabled);
-    Pose {
-        clip: asset(&pose.clip, clips, source.of(keys::CLIP)).unwrap_or_default(),
-        phase: number(&pose.phase, source.of(keys::PHASE)),
-        mirrored: flag(&pose.mirrored, source.of(keys::MIRRORED)),
     }
 }
 

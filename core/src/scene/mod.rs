@@ -12,7 +12,8 @@ mod person;
 
 pub use camera::Camera;
 pub use person::{
-    Body, Bottom, BottomKind, HairStyle, Look, Outfit, Person, Pose, Sex, Shoes, Top,
+    Body, Bottom, BottomKind, HairStyle, HandShape, Look, Outfit, Person, Pose, PoseBlend, Sex,
+    Shoes, Top,
 };
 
 /// Everything that one frame shows.

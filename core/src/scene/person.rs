@@ -175,13 +175,95 @@ pub struct Shoes {
     pub color: [f64; 3],
 }
 
-/// A frame of a motion clip.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+/// A frame of a motion clip or a pose, with what was changed in it.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Pose {
-    /// Clip id in the library.
+    /// Id in the library of a clip, or of a pose, which begins with `pose/`.
     pub clip: String,
     /// Position in the clip, 0 its first frame .. 1 its last; between frames it is interpolated.
     pub phase: f64,
-    /// Left and right exchanged.
+    /// Left and right exchanged, of all that follows as well.
     pub mirrored: bool,
+    /// What the person does.
+    #[serde(default)]
+    pub activity: String,
+    /// A second clip or pose that has a share in it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub blend: Option<PoseBlend>,
+    /// Joint angles by name, with what is added to them, degrees; joints stop at their limits.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub variation_deg: Vec<(String, f64)>,
+    /// How the head is turned beyond that: to the left, and up.
+    #[serde(default, skip_serializing_if = "is_straight")]
+    pub gaze_deg: [f64; 2],
+    /// Fingers of the left and right hand; absent where they are those of the pose, and relaxed in
+    /// a clip.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub hands: Option<[HandShape; 2]>,
+}
+
+fn is_straight(gaze_deg: &[f64; 2]) -> bool {
+    *gaze_deg == [0.0; 2]
+}
+
+/// A second clip or pose.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct PoseBlend {
+    /// Id in the library.
+    pub clip: String,
+    /// Position in the clip, 0..1.
+    pub phase: f64,
+    /// 0 the first alone .. 1 this alone.
+    pub share: f64,
+}
+
+/// What fingers do.
+#[derive(
+    Clone,
+    Copy,
+    Debug,
+    Default,
+    PartialEq,
+    Eq,
+    Hash,
+    PartialOrd,
+    Ord,
+    Serialize,
+    Deserialize,
+    schemars::JsonSchema,
+)]
+#[serde(rename_all = "snake_case")]
+pub enum HandShape {
+    /// Loosely bent.
+    #[default]
+    Relaxed,
+    /// Straight and together.
+    Flat,
+    /// Straight and apart.
+    Spread,
+    /// Round a handle.
+    Grip,
+    /// Closed.
+    Fist,
+    /// Closed but for the index finger.
+    Point,
+}
+
+impl HandShape {
+    /// All.
+    pub const ALL: [Self; 6] =
+        [Self::Relaxed, Self::Flat, Self::Spread, Self::Grip, Self::Fist, Self::Point];
+
+    /// The name in files.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Relaxed => "relaxed",
+            Self::Flat => "flat",
+            Self::Spread => "spread",
+            Self::Grip => "grip",
+            Self::Fist => "fist",
+            Self::Point => "point",
+        }
+    }
 }
