@@ -68,7 +68,11 @@ impl Road for Native {
         let library = Library::new(&[], 1024).map_err(|e| e.to_string())?;
         Ok(vec![
             format!("1 figure with {} face targets", library.figure.face_target_names().len()),
-            format!("{} motion clips", library.clips.ids().count()),
+            format!(
+                "{} motion clips and {} poses",
+                library.clips.ids().count(),
+                library.poses.ids().count()
+            ),
             format!(
                 "{} textures and {} cloth patterns",
                 library.surface_textures().len(),

@@ -78,6 +78,7 @@ fn pose_one<'a>(
     let key = MeshKey::new(person);
     let body = cast.body(&library.figure, key, person)?;
     let mut skeleton = skeleton(&person.pose, library, &body.heads_m)?;
+    body.trunk.push_arms_out(&body.heads_m, &mut skeleton);
     skeleton.ground(body.ground.iter().map(|p| (p.rest_m, p.skin)));
     let view_from_model = *view_from_world * world_from_model(&person.placement);
     let scale = person.placement.scale.abs().max_element();

@@ -277,7 +277,11 @@ mod tests {
         assert_eq!(extras["visibility"][2]["by"], 9);
         assert_eq!(extras["visibility"][0]["fraction"], 0.75);
         assert_eq!(extras["keypoints_3d"].as_array().unwrap().len(), 17);
-        assert_eq!(extras["person"]["sex"], "female");
+        let person = &extras["person"];
+        assert_eq!(person["sex"], "female");
+        assert_eq!([&person["clip"], &person["activity"]], ["walk", "walking"]);
+        assert_eq!((&person["phase"], &person["identity"]), (&Value::from(0.25), &Value::from(7)));
+        assert!(person.get("pose").is_none());
     }
 
     #[test]

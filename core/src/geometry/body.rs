@@ -8,6 +8,7 @@
 use glam::DVec3;
 
 use super::phenotype::{Shape, evaluate, face_weights, heights, macro_weights};
+use super::trunk::Trunk;
 use crate::library::figure::data::KEYPOINT_VERTICES;
 use crate::library::figure::{Figure, FigureError, GroupId, JOINT_COUNT, LOD_COUNT, VOLUME_LOD};
 use crate::library::mesh::SkinVertex;
@@ -19,6 +20,9 @@ pub const SOLE_M: f32 = 0.012;
 const DENSITY_KG_M3: f64 = 980.0;
 /// Clothes and the difference of the levels of detail, for bounds.
 const COVER_M: f64 = 0.05;
+/// Of the keypoints, COCO's order.
+const LEFT_ELBOW: usize = 7;
+const LEFT_WRIST: usize = 9;
 /// Hair, likewise.
 const HAIR_M: f64 = 0.09;
 
@@ -57,6 +61,8 @@ pub struct RestBody {
     pub ground: Vec<SkinPoint>,
     /// No posed, dressed vertex that a joint moves is farther from its head.
     pub reach_m: [f64; JOINT_COUNT],
+    /// What arms stay out of.
+    pub trunk: Trunk,
     /// Standing height without shoes.
     pub stature_m: f64,
     /// From the body's volume.
@@ -96,9 +102,17 @@ pub fn rest_body(
         (heads_m[j], tails_m[j]) = (mean(h), mean(t));
     }
     let ground = ground(figure, &needed);
-    let keypoints = (0..figure.keypoint_names().len()).map(|k| keypoint(figure, &needed, k));
+    let keypoints: Vec<_> =
+        (0..figure.keypoint_names().len()).map(|k| keypoint(figure, &needed, k)).collect();
+    let vertices = needed.parts[0].1.iter().zip(&needed.skin);
+    let trunk = Trunk::new(
+        &heads_m,
+        vertices.map(|(p, skin)| (DVec3::from_array(p.map(f64::from)), *skin)),
+        [LEFT_ELBOW, LEFT_WRIST].map(|k| keypoints[k].radius_m),
+    );
     Ok(RestBody {
-        keypoints: keypoints.collect(),
+        keypoints,
+        trunk,
         ground,
         reach_m: reach(figure, &needed, &heads_m),
         stature_m: body.stature_m,

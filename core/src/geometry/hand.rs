@@ -35,7 +35,7 @@ const fn fingers(shape: HandShape) -> Fingers {
                 [2.0, 2.0, 1.0],
                 [2.0, 2.0, 1.0],
             ],
-            spread_deg: [-8.0, -3.0, 0.0, -3.0, -5.0],
+            spread_deg: [-10.0, -8.0, 0.0, -7.0, -14.0],
         },
         HandShape::Spread => Fingers {
             curl_deg: [
@@ -55,16 +55,16 @@ const fn fingers(shape: HandShape) -> Fingers {
                 [52.0, 56.0, 30.0],
                 [54.0, 56.0, 30.0],
             ],
-            spread_deg: [0.0, -2.0, 0.0, -2.0, -3.0],
+            spread_deg: [0.0, -6.0, 0.0, -5.0, -10.0],
         },
         HandShape::Fist => {
-            Fingers { curl_deg: FIST_DEG, spread_deg: [-6.0, -3.0, 0.0, -3.0, -5.0] }
+            Fingers { curl_deg: FIST_DEG, spread_deg: [-6.0, -8.0, 0.0, -6.0, -12.0] }
         }
         HandShape::Point => {
             let [thumb, _, middle, ring, little] = FIST_DEG;
             Fingers {
                 curl_deg: [thumb, [4.0, 6.0, 4.0], middle, ring, little],
-                spread_deg: [-6.0, 0.0, 0.0, -3.0, -5.0],
+                spread_deg: [-6.0, -6.0, 0.0, -6.0, -12.0],
             }
         }
     }

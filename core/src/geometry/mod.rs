@@ -12,6 +12,7 @@
 //! | `garment`, `hair`, `cut` | clothes and hair, cut from shells along scalar fields |
 //! | [`skeleton`], [`pose`] | joints, and clips and poses retargeted to a body |
 //! | [`stance`], `hand` | what joints and fingers are to do |
+//! | [`trunk`] | keeps arms out of trunks |
 //! | [`points`] | poses single vertices in double precision |
 //! | [`shape`] | primitive shapes |
 
@@ -28,3 +29,4 @@ pub mod shape;
 pub mod skeleton;
 pub mod stance;
 pub mod surface;
+pub mod trunk;

@@ -365,7 +365,7 @@ fn shortest_arc(from: DVec3, to: DVec3) -> DQuat {
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::*;
     use crate::geometry::points::pose_vertex;
     use crate::geometry::skeleton::{JOINT_NAMES, joint_by_name, mirrored};
@@ -404,7 +404,7 @@ mod tests {
         [21.99, -81.02, 12.08],
     ];
 
-    fn adult() -> [DVec3; JOINT_COUNT] {
+    pub(in crate::geometry) fn adult() -> [DVec3; JOINT_COUNT] {
         std::array::from_fn(|joint| {
             let left = if joint < ADULT_CM.len() { joint } else { mirrored(joint) };
             let p = DVec3::from_array(ADULT_CM[left]) * 0.01;
@@ -412,7 +412,7 @@ mod tests {
         })
     }
 
-    fn flip(p: DVec3) -> DVec3 {
+    pub(in crate::geometry) fn flip(p: DVec3) -> DVec3 {
         DVec3::new(-p.x, p.y, p.z)
     }
 

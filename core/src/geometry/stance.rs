@@ -245,7 +245,7 @@ fn ball(joint: BallJoint, angles: &Angles) -> DQuat {
 }
 
 /// Sets a joint's angles to those of a rotation; of the two triples that give it, to the one that
-/// is less beyond the joint's limits.
+/// is less beyond the joint's limits, or smaller.
 pub(super) fn set_ball(joint: BallJoint, angles: &mut Angles, rotation: DQuat) {
     let (names, parts) = joint.angles();
     let [x, z, y] = euler_xzy(rotation).map(f64::to_degrees);
@@ -259,14 +259,17 @@ pub(super) fn set_ball(joint: BallJoint, angles: &mut Angles, rotation: DQuat) {
             deg - whole * ((deg - middle) / whole).round()
         })
     });
-    let excess = |triple: &[f64; 3]| -> f64 {
-        let beyond = |(deg, name): (&f64, &Angle)| {
+    let beyond = |triple: &[f64; 3]| -> f64 {
+        let excess = |(deg, name): (&f64, &Angle)| {
             let [low, high] = name.reach().limits_deg;
             (low - deg).max(deg - high).max(0.0)
         };
-        triple.iter().zip(&names).map(beyond).sum()
+        triple.iter().zip(&names).map(excess).sum()
     };
-    let best = if excess(&triples[1]) < excess(&triples[0]) { triples[1] } else { triples[0] };
+    let size = |triple: &[f64; 3]| triple.iter().map(|deg| deg.abs()).sum::<f64>();
+    let [first, second] = triples;
+    let better = (beyond(&second), size(&second)) < (beyond(&first), size(&first));
+    let best = if better { second } else { first };
     for (name, deg) in names.into_iter().zip(best) {
         *angles.get_mut(name) = deg;
     }
@@ -293,4 +296,217 @@ pub(super) fn euler_xzy(rotation: DQuat) -> [f64; 3] {
         return [libm::atan2(-m.z_axis.y, m.z_axis.z), z, 0.0];
     }
     [libm::atan2(m.y_axis.z, m.y_axis.y), z, libm::atan2(m.z_axis.x, m.x_axis.x)]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::base::rng::{Draws, Key};
+    use crate::geometry::pose::PosedSkeleton;
+    use crate::geometry::pose::tests::{adult, flip};
+    use crate::geometry::skeleton::{JOINT_COUNT, JOINT_NAMES, PARENTS, mirrored};
+    use crate::library::clip::Clips;
+    use crate::library::pose::Poses;
+
+    fn poses() -> impl Iterator<Item = (&'static Pose, Stance)> {
+        Poses::built_in().all().iter().map(|p| (p, Stance::of_pose(p)))
+    }
+
+    /// Degrees by which the worst angle lies beyond its limits.
+    fn excess_deg(angles: &Angles) -> f64 {
+        let beyond = |angle: Angle| {
+            let [low, high] = angle.reach().limits_deg;
+            (low - angles.get(angle)).max(angles.get(angle) - high)
+        };
+        Angle::all().map(beyond).fold(0.0, f64::max)
+    }
+
+    /// Up to three times as far as the sampler goes.
+    fn offsets(draw: u32) -> Vec<(String, f64)> {
+        let uniform = |i: usize| {
+            Draws::new(5, draw).of(Key::new("offset"), 0).lane(i as u16).uniform() * 2.0 - 1.0
+        };
+        let one = |(i, a): (usize, Angle)| (a.name(), uniform(i) * 7.5 * a.reach().spread_deg);
+        Angle::all().enumerate().map(one).collect()
+    }
+
+    #[test]
+    fn every_pose_is_rigid_and_whole_on_every_side() {
+        let rest = adult();
+        for (pose, stance) in poses() {
+            assert!(excess_deg(&stance.angles) <= 0.0, "{}", pose.id);
+            for stance in [stance.mirrored(), stance] {
+                let skeleton = PosedSkeleton::of_stance(&rest, &stance);
+                for (joint, m) in skeleton.model_from_rest.iter().enumerate() {
+                    let gram = m.matrix3.transpose() * m.matrix3;
+                    assert!(gram.abs_diff_eq(DMat3::IDENTITY, 1e-12), "{}", JOINT_NAMES[joint]);
+                    assert!((m.matrix3.determinant() - 1.0).abs() < 1e-12);
+                    let parent = usize::from(PARENTS[joint]);
+                    let by_parent = skeleton.joint_m(parent, rest[joint]);
+                    let gap = by_parent.distance(skeleton.joint_m(joint, rest[joint]));
+                    assert!(gap < 1e-12, "{} {}", pose.id, JOINT_NAMES[joint]);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn mirrored_poses_are_reflections() {
+        let rest = adult();
+        for (pose, stance) in poses() {
+            let stance = stance.varied(&offsets(3)).looking([20.0, 5.0]);
+            let plain = PosedSkeleton::of_stance(&rest, &stance);
+            let mirror = PosedSkeleton::of_stance(&rest, &stance.mirrored());
+            for joint in 0..JOINT_COUNT {
+                let there = mirror.joint_m(joint, rest[joint]);
+                let other = mirrored(joint);
+                let gap = there.distance(flip(plain.joint_m(other, rest[other])));
+                assert!(gap < 1e-9, "{} {} {gap}", pose.id, JOINT_NAMES[joint]);
+            }
+            assert_eq!(stance.mirrored().mirrored(), stance);
+        }
+    }
+
+    #[test]
+    fn variation_and_gaze_stay_within_human_reach() {
+        let all: Vec<Stance> = poses().map(|p| p.1).collect();
+        let mut moved = 0;
+        for draw in 0..1000 {
+            let stance = &all[draw as usize % all.len()];
+            let varied = stance.clone().varied(&offsets(draw)).looking([300.0, -200.0]);
+            assert!(excess_deg(&varied.angles) <= 0.0, "{draw}");
+            moved += usize::from(varied.angles != stance.angles);
+            assert_eq!(varied.angles.trunk(Trunk::HeadTwist), 75.0);
+            assert_eq!(varied.angles.trunk(Trunk::HeadFlexion), 55.0);
+        }
+        assert_eq!(moved, 1000);
+        // Of a clip that leaves the limits itself no angle goes farther out.
+        for clip in Clips::built_in().all() {
+            for (i, frame) in clip.frames().iter().enumerate().step_by(5) {
+                let stance = Stance::of_clip(frame);
+                let varied = stance.clone().varied(&offsets(i as u32));
+                assert!(excess_deg(&varied.angles) <= excess_deg(&stance.angles), "{}", clip.id);
+            }
+        }
+    }
+
+    #[test]
+    fn freedom_bounds_the_variation_of_a_part() {
+        let mut stance = poses().next().unwrap().1;
+        stance.angles = Angles::default();
+        stance.freedom = Freedom { trunk: 0.0, arms: 0.5, legs: 1.0 };
+        let by = ["head_twist", "left_elbow_flexion", "right_knee_flexion", "tail"];
+        let by: Vec<_> = by.map(|name| (name.to_owned(), 8.0)).to_vec();
+        let varied = stance.varied(&by);
+        assert_eq!(varied.angles.trunk(Trunk::HeadTwist), 0.0);
+        assert_eq!(varied.angles.limb(0, Limb::ElbowFlexion), 4.0);
+        assert_eq!(varied.angles.limb(1, Limb::KneeFlexion), 8.0);
+    }
+
+    #[test]
+    fn blending_begins_with_one_ends_with_the_other_and_breaks_no_joint() {
+        let all: Vec<(&Pose, Stance)> = poses().collect();
+        // Different angles may be the same rotation.
+        let close = |a: &Angles, b: &Angles| {
+            let near = |joint: &BallJoint| ball(*joint, a).dot(ball(*joint, b)).abs() > 1.0 - 1e-12;
+            let knee =
+                |side| (a.limb(side, Limb::KneeFlexion) - b.limb(side, Limb::KneeFlexion)).abs();
+            BallJoint::ALL.iter().all(near) && knee(0) < 1e-9 && knee(1) < 1e-9
+        };
+        for (i, (pose, a)) in all.iter().enumerate() {
+            let b = &all[(i * 7 + 3) % all.len()].1;
+            for share in [0.1, 0.5, 0.77] {
+                assert!(excess_deg(&a.blended(b, share).angles) <= 0.0, "{} {share}", pose.id);
+            }
+            assert!(close(&a.blended(b, 0.0).angles, &a.angles), "{}", pose.id);
+            assert!(close(&a.blended(b, 1.0).angles, &b.angles), "{}", pose.id);
+        }
+    }
+
+    #[test]
+    fn a_clip_taken_apart_is_the_clip() {
+        let rest = adult();
+        let mut worst: (f64, &str, usize) = (0.0, "", 0);
+        for clip in Clips::built_in().all() {
+            for frame in clip.frames() {
+                let plain = PosedSkeleton::new(&rest, frame, false);
+                let again = PosedSkeleton::of_stance(&rest, &Stance::of_clip(frame));
+                for joint in 0..JOINT_COUNT {
+                    let gap = plain
+                        .joint_m(joint, rest[joint])
+                        .distance(again.joint_m(joint, rest[joint]));
+                    if gap > worst.0 {
+                        worst = (gap, &clip.id, joint);
+                    }
+                }
+            }
+        }
+        // Elbows and knees of the clips turn a little about other axes than the hinge.
+        assert!(worst.0 < 0.01, "{worst:?} {}", JOINT_NAMES[worst.2]);
+    }
+
+    #[test]
+    fn planted_feet_share_one_ground_and_are_level_however_the_body_varies() {
+        let rest = adult();
+        let mut uneven = 0;
+        let planted: Vec<_> = poses().filter(|(p, _)| p.feet == [Foot::Planted; 2]).collect();
+        for draw in 0..500 {
+            let (pose, stance) = &planted[draw as usize % planted.len()];
+            let by: Vec<_> = offsets(draw).into_iter().map(|(n, d)| (n, d / 7.5)).collect();
+            let skeleton = PosedSkeleton::of_stance(&rest, &stance.clone().varied(&by));
+            let y = |joint: usize| skeleton.joint_m(joint, rest[joint]).y;
+            let [left, right] = Side::BOTH.map(|s| y(s.joint(super::super::skeleton::Limb::Foot)));
+            let same = (left - right).abs() < 0.002;
+            uneven += usize::from(!same);
+            assert!((left - right).abs() < 0.12, "{} {left} {right}", pose.id);
+        }
+        // A leg that would leave its limits stays where it is.
+        assert!(uneven <= 25, "{uneven} of 500");
+    }
+
+    #[test]
+    fn angles_turn_limbs_the_way_their_names_say() {
+        let rest = adult();
+        let joints = |name: &str, deg: f64| {
+            let mut stance = poses().next().unwrap().1;
+            (stance.root, stance.angles) = (DQuat::IDENTITY, Angles::default());
+            stance.feet = [Foot::Free; 2];
+            *stance.angles.get_mut(Angle::by_name(name).unwrap()) = deg;
+            let skeleton = PosedSkeleton::of_stance(&rest, &stance);
+            move |joint: &str| {
+                let joint = JOINT_NAMES.iter().position(|n| *n == joint).unwrap();
+                skeleton.joint_m(joint, adult()[joint])
+            }
+        };
+        // What moves, and where to: x is to the left, y up, z forward.
+        for (name, joint, way) in [
+            ("spine_flexion", "Head", DVec3::Z),
+            ("spine_lean", "Head", DVec3::X),
+            ("head_lean", "Head", DVec3::X),
+            ("left_shoulder_flexion", "LeftHand", DVec3::Z),
+            ("left_shoulder_abduction", "LeftHand", DVec3::X),
+            ("right_shoulder_abduction", "RightHand", DVec3::NEG_X),
+            ("left_elbow_flexion", "LeftHand", DVec3::Z),
+            ("left_wrist_flexion", "LeftHandMiddle2", DVec3::NEG_X),
+            ("right_wrist_flexion", "RightHandMiddle2", DVec3::X),
+            ("left_clavicle_elevation", "LeftArm", DVec3::Y),
+            ("right_clavicle_protraction", "RightArm", DVec3::Z),
+            ("left_hip_flexion", "LeftFoot", DVec3::Z),
+            ("right_hip_abduction", "RightFoot", DVec3::NEG_X),
+            ("right_knee_flexion", "RightFoot", DVec3::NEG_Z),
+            ("left_ankle_flexion", "LeftToeBase", DVec3::Y),
+            ("left_hip_rotation", "LeftToeBase", DVec3::NEG_X),
+            ("right_hip_rotation", "RightToeBase", DVec3::X),
+            ("right_ankle_rotation", "RightToeBase", DVec3::X),
+            ("spine_twist", "RightArm", DVec3::Z),
+            ("left_forearm_pronation", "LeftHandThumb2", DVec3::NEG_X),
+            ("right_shoulder_rotation", "RightHandThumb2", DVec3::X),
+        ] {
+            let moved = joints(name, 20.0)(joint) - joints(name, 0.0)(joint);
+            assert!(
+                moved.dot(way) > 0.5 * moved.length() && moved.length() > 0.002,
+                "{name} {moved}"
+            );
+        }
+    }
 }

@@ -1,0 +1,284 @@
+//! Keeps arms out of trunks.
+//!
+//! Poses and clips know one body; on a heavier one their arms would sink into it. The trunk at rest
+//! is measured as slices with an elliptic outline, each moving with a joint of the spine; arms are
+//! chains of spheres. An arm that is inside is turned out about its shoulder, as little as that
+//! takes.
+
+use glam::{DAffine3, DVec3};
+
+use super::pose::PosedSkeleton;
+use super::skeleton::{JOINT_COUNT, Limb, Side, trunk};
+use super::stance::turn;
+use crate::library::mesh::SkinVertex;
+
+/// Slices from hips to shoulders.
+const SLICES: usize = 12;
+/// An arm may press that far into the trunk: flesh gives way, metres at adult size.
+const SOFT_M: f64 = 0.012;
+/// Clothes between arm and trunk, metres.
+const CLOTH_M: f64 = 0.006;
+/// An arm is turned by no more than this at a time and in all, degrees.
+const STEP_DEG: f64 = 12.0;
+const STEPS: usize = 8;
+
+/// A level cut through a trunk at rest, model space, metres.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct Slice {
+    half_width_m: f64,
+    half_depth_m: f64,
+    center_z_m: f64,
+}
+
+/// A trunk at rest, from the hips to the armpits.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Trunk {
+    low_m: f64,
+    high_m: f64,
+    slices: [Slice; SLICES],
+    /// Of elbow and wrist, metres.
+    arm_radius_m: [f64; 2],
+}
+
+impl Trunk {
+    /// Measures a trunk by its skin's vertices at rest.
+    pub(super) fn new(
+        heads_m: &[DVec3; JOINT_COUNT],
+        skin: impl Iterator<Item = (DVec3, SkinVertex)>,
+        arm_radius_m: [f64; 2],
+    ) -> Self {
+        let thigh_m = heads_m[Side::Left.joint(Limb::UpLeg)];
+        let armpit_m = heads_m[Side::Left.joint(Limb::Arm)];
+        let (low_m, high_m) = (thigh_m.y, thigh_m.y + 0.8 * (armpit_m.y - thigh_m.y));
+        let mut low = [DVec3::ZERO; SLICES];
+        let mut high = [DVec3::ZERO; SLICES];
+        let of_trunk = |skin: SkinVertex| -> u32 {
+            let weights = skin.joints.iter().zip(&skin.weights);
+            weights.filter(|w| usize::from(*w.0) <= trunk::SPINE2).map(|w| u32::from(*w.1)).sum()
+        };
+        for (p, skin) in skin {
+            // The halves of the slices next to a vertex count it, so that none stays empty.
+            let place = (p.y - low_m) / (high_m - low_m) * (SLICES - 1) as f64;
+            if place < -1.0 || place > SLICES as f64 || of_trunk(skin) < 200 {
+                continue;
+            }
+            for slice in [place.floor(), place.floor() + 1.0] {
+                if (0.0..SLICES as f64).contains(&slice) {
+                    let i = slice as usize;
+                    (low[i], high[i]) = (low[i].min(p), high[i].max(p));
+                }
+            }
+        }
+        let slice = |i: usize| Slice {
+            half_width_m: 0.5 * (high[i].x - low[i].x),
+            half_depth_m: 0.5 * (high[i].z - low[i].z),
+            center_z_m: 0.5 * (high[i].z + low[i].z),
+        };
+        Self { low_m, high_m, slices: std::array::from_fn(slice), arm_radius_m }
+    }
+
+    /// The outline at a height, between two slices; nothing above and below.
+    fn at(&self, y_m: f64) -> Option<Slice> {
+        let place = (y_m - self.low_m) / (self.high_m - self.low_m) * (SLICES - 1) as f64;
+        if !(0.0..(SLICES - 1) as f64).contains(&place) {
+            return None;
+        }
+        let (i, t) = (place as usize, place.fract());
+        let (a, b) = (self.slices[i], self.slices[i + 1]);
+        let mix = |a: f64, b: f64| a + (b - a) * t;
+        Some(Slice {
+            half_width_m: mix(a.half_width_m, b.half_width_m),
+            half_depth_m: mix(a.half_depth_m, b.half_depth_m),
+            center_z_m: mix(a.center_z_m, b.center_z_m),
+        })
+    }
+
+    /// How far a sphere is inside the trunk at rest, and the way out; model space, metres.
+    fn depth(&self, center_m: DVec3, radius_m: f64) -> Option<(f64, DVec3)> {
+        let slice = self.at(center_m.y)?;
+        let (a, b) = (slice.half_width_m + radius_m, slice.half_depth_m + radius_m);
+        let (x, z) = (center_m.x, center_m.z - slice.center_z_m);
+        let inside = (x / a) * (x / a) + (z / b) * (z / b);
+        if inside >= 1.0 || a <= 0.0 || b <= 0.0 {
+            return None;
+        }
+        let out = DVec3::new(x / (a * a), 0.0, z / (b * b));
+        if out.length_squared() < 1e-12 {
+            return None;
+        }
+        // To first order the distance to an ellipse is (1 - f) / |grad f|, with f the root of the
+        // quadratic form.
+        let root = inside.sqrt();
+        let depth_m = (1.0 - root) * root / out.length();
+        Some((depth_m, out.normalize()))
+    }
+
+    /// Turns both arms of a posed skeleton out of the trunk.
+    pub fn push_arms_out(&self, heads_m: &[DVec3; JOINT_COUNT], skeleton: &mut PosedSkeleton) {
+        for side in Side::BOTH {
+            for _ in 0..STEPS {
+                let Some((depth_m, at_m, out)) = self.deepest(heads_m, skeleton, side) else {
+                    break;
+                };
+                let shoulder_m =
+                    skeleton.joint_m(side.joint(Limb::Arm), heads_m[side.joint(Limb::Arm)]);
+                let lever = at_m - shoulder_m;
+                let axis = lever.cross(out);
+                let arm_m = axis.length();
+                if arm_m < 1e-6 {
+                    break;
+                }
+                let deg = libm::atan2(depth_m, arm_m).to_degrees().min(STEP_DEG);
+                let turn = turn(axis / arm_m, deg);
+                let about = DAffine3::from_translation(shoulder_m)
+                    * DAffine3::from_quat(turn)
+                    * DAffine3::from_translation(-shoulder_m);
+                for joint in side.joint(Limb::Arm)..side.joint(Limb::UpLeg) {
+                    skeleton.model_from_rest[joint] = about * skeleton.model_from_rest[joint];
+                }
+            }
+        }
+    }
+
+    /// The sphere of an arm that is deepest inside: how deep, where, and the way out.
+    fn deepest(
+        &self,
+        heads_m: &[DVec3; JOINT_COUNT],
+        skeleton: &PosedSkeleton,
+        side: Side,
+    ) -> Option<(f64, DVec3, DVec3)> {
+        let at = |limb: Limb| {
+            let joint = side.joint(limb);
+            skeleton.joint_m(joint, heads_m[joint])
+        };
+        let [elbow_m, wrist_m, finger_m] = [Limb::ForeArm, Limb::Hand, Limb::Middle1].map(at);
+        let [elbow_r, wrist_r] = self.arm_radius_m;
+        let mut spheres = [(DVec3::ZERO, 0.0); 7];
+        for (i, sphere) in spheres.iter_mut().enumerate() {
+            let t = i as f64 / 4.0;
+            *sphere = match i {
+                0..=4 => (elbow_m.lerp(wrist_m, t), elbow_r + (wrist_r - elbow_r) * t),
+                // The hand is as thick as a third of the wrist's width.
+                5 => (wrist_m.lerp(finger_m, 0.6), wrist_r * 0.6),
+                _ => (wrist_m.lerp(finger_m, 1.2), wrist_r * 0.5),
+            };
+        }
+        let soft_m = SOFT_M - CLOTH_M;
+        let mut worst: Option<(f64, DVec3, DVec3)> = None;
+        for (center_m, radius_m) in spheres {
+            let joint = self.nearest(heads_m, skeleton, center_m);
+            let model_from_rest = &skeleton.model_from_rest[joint];
+            let in_rest = model_from_rest.inverse().transform_point3(center_m);
+            let Some((depth_m, out)) = self.depth(in_rest, radius_m - soft_m) else { continue };
+            if depth_m > 1e-4 && worst.is_none_or(|w| depth_m > w.0) {
+                worst = Some((depth_m, center_m, model_from_rest.transform_vector3(out)));
+            }
+        }
+        worst
+    }
+
+    /// The joint of the trunk that moves the slice next to a point.
+    fn nearest(
+        &self,
+        heads_m: &[DVec3; JOINT_COUNT],
+        skeleton: &PosedSkeleton,
+        point_m: DVec3,
+    ) -> usize {
+        let middle = |joint: usize| {
+            let next = if joint == trunk::SPINE2 { trunk::NECK } else { joint + 1 };
+            let rest_m = (heads_m[joint] + heads_m[next]) * 0.5;
+            skeleton.joint_m(joint, rest_m).distance_squared(point_m)
+        };
+        let mut best = trunk::HIPS;
+        for joint in trunk::SPINE..=trunk::SPINE2 {
+            if middle(joint) < middle(best) {
+                best = joint;
+            }
+        }
+        best
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::pose::tests::{adult, flip};
+    use crate::geometry::skeleton::{PARENTS, mirrored};
+    use crate::geometry::stance::Stance;
+    use crate::library::pose::Poses;
+
+    /// An upright elliptic cylinder in place of a trunk.
+    fn cylinder(half_width_m: f64, half_depth_m: f64) -> Trunk {
+        let skin = SkinVertex { joints: [0, 2, 3, 0], weights: [55, 100, 100, 0] };
+        let points = (0..6000).map(|i| {
+            let (phi, y) = (f64::from(i % 60) * 0.1047, f64::from(i / 60) * 0.007 - 0.1);
+            let (sin, cos) = (libm::sin(phi), libm::cos(phi));
+            (DVec3::new(half_width_m * sin, y, 0.02 + half_depth_m * cos), skin)
+        });
+        Trunk::new(&adult(), points, [0.05, 0.03])
+    }
+
+    fn posed(pose: &str) -> PosedSkeleton {
+        let pose = Poses::built_in().get(pose).unwrap();
+        PosedSkeleton::of_stance(&adult(), &Stance::of_pose(pose))
+    }
+
+    fn deepest_m(trunk: &Trunk, skeleton: &PosedSkeleton) -> f64 {
+        let depth = |side| trunk.deepest(&adult(), skeleton, side).map_or(0.0, |d| d.0);
+        Side::BOTH.map(depth).into_iter().fold(0.0, f64::max)
+    }
+
+    #[test]
+    fn the_distance_to_the_outline_is_right_along_the_axes() {
+        let trunk = cylinder(0.2, 0.15);
+        for (at, depth_m) in [
+            (DVec3::new(0.21, 0.2, 0.02), 0.02),
+            (DVec3::new(0.0, 0.2, 0.02 + 0.15), 0.03),
+            (DVec3::new(0.0, 0.2, 0.02 - 0.15), 0.03),
+        ] {
+            let (found_m, out) = trunk.depth(at, 0.03).unwrap();
+            assert!((found_m - depth_m).abs() < 0.003, "{at} {found_m}");
+            assert!(out.dot(at - DVec3::new(0.0, 0.2, 0.02)) > 0.0);
+        }
+        assert!(trunk.depth(DVec3::new(0.24, 0.2, 0.02), 0.03).is_none());
+        assert!(trunk.depth(DVec3::new(0.0, 0.9, 0.0), 0.03).is_none());
+    }
+
+    #[test]
+    fn arms_leave_a_heavy_trunk_and_stay_where_they_are_on_a_slim_one() {
+        let rest = adult();
+        for pose in ["pose/standing_at_ease", "pose/standing_hands_clasped", "pose/arms_crossed"] {
+            let before = posed(pose);
+            let mut slim = before.clone();
+            cylinder(0.08, 0.05).push_arms_out(&rest, &mut slim);
+            assert_eq!(slim, before, "{pose}");
+
+            let heavy = cylinder(0.21, 0.2);
+            let mut pushed = before.clone();
+            heavy.push_arms_out(&rest, &mut pushed);
+            let (was_m, is_m) = (deepest_m(&heavy, &before), deepest_m(&heavy, &pushed));
+            assert!(was_m > 0.015 && is_m < 0.004, "{pose} {was_m} {is_m}");
+            for joint in 0..JOINT_COUNT {
+                let parent = usize::from(PARENTS[joint]);
+                let gap = pushed
+                    .joint_m(parent, rest[joint])
+                    .distance(pushed.joint_m(joint, rest[joint]));
+                assert!(gap < 1e-12, "{pose} {joint}");
+            }
+        }
+    }
+
+    #[test]
+    fn left_and_right_are_pushed_alike() {
+        let (rest, trunk) = (adult(), cylinder(0.21, 0.18));
+        let mut skeleton = posed("pose/standing_at_ease");
+        trunk.push_arms_out(&rest, &mut skeleton);
+        for joint in 0..JOINT_COUNT {
+            let other = mirrored(joint);
+            let gap = skeleton
+                .joint_m(joint, rest[joint])
+                .distance(flip(skeleton.joint_m(other, rest[other])));
+            assert!(gap < 1e-9, "{joint} {gap}");
+        }
+    }
+}
