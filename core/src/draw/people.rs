@@ -77,9 +77,13 @@ fn pose_one<'a>(
 ) -> Result<Posed<'a>, DrawError> {
     let key = MeshKey::new(person);
     let body = cast.body(&library.figure, key, person)?;
-    let mut skeleton = skeleton(&person.pose, library, &body.heads_m)?;
+    let (mut skeleton, rests) = skeleton(&person.pose, library, &body.heads_m)?;
     body.trunk.push_arms_out(&body.heads_m, &mut skeleton);
-    skeleton.ground(body.ground.iter().map(|p| (p.rest_m, p.skin)));
+    let contacts = body.ground.iter().map(|p| (p.rest_m, p.skin));
+    if rests {
+        skeleton.settle(&body.heads_m, contacts.clone());
+    }
+    skeleton.ground(contacts);
     let view_from_model = *view_from_world * world_from_model(&person.placement);
     let scale = person.placement.scale.abs().max_element();
     let (center, radius_m) = bounds(&skeleton, &body);
@@ -95,18 +99,19 @@ fn pose_one<'a>(
     })
 }
 
-/// Where a pose takes a person's joints; the height is not settled yet.
+/// Where a pose takes a person's joints, and whether the body then rests on the ground; the height
+/// is not settled yet.
 fn skeleton(
     pose: &Pose,
     library: &Library,
     heads_m: &[DVec3; JOINT_COUNT],
-) -> Result<PosedSkeleton, DrawError> {
+) -> Result<(PosedSkeleton, bool), DrawError> {
     let is_plain =
         pose.blend.is_none() && pose.variation_deg.is_empty() && pose.gaze_deg == [0.0; 2];
     if is_plain && !pose.clip.starts_with(PREFIX) {
         let frame = library.clips.get(&pose.clip)?.sample(pose.phase);
         let hands = pose.hands.unwrap_or_default();
-        return Ok(PosedSkeleton::of_clip(heads_m, &frame, hands, pose.mirrored));
+        return Ok((PosedSkeleton::of_clip(heads_m, &frame, hands, pose.mirrored), false));
     }
     let stance = |id: &str, phase: f64| -> Result<Stance, DrawError> {
         if id.starts_with(PREFIX) {
@@ -121,7 +126,7 @@ fn skeleton(
     let mut all = all.varied(&pose.variation_deg).looking(pose.gaze_deg);
     all.hands = pose.hands.unwrap_or(all.hands);
     let all = if pose.mirrored { all.mirrored() } else { all };
-    Ok(PosedSkeleton::of_stance(heads_m, &all))
+    Ok((PosedSkeleton::of_stance(heads_m, &all), all.rests))
 }
 
 /// Centre and radius of a sphere round the posed, dressed body, model space.

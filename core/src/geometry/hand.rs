@@ -13,6 +13,8 @@ struct Fingers {
     curl_deg: [[f64; 3]; 5],
     /// Turn of the whole finger away from the middle one.
     spread_deg: [f64; 5],
+    /// Turn of the thumb's three segments across the palm.
+    across_deg: [f64; 3],
 }
 
 const fn fingers(shape: HandShape) -> Fingers {
@@ -26,16 +28,18 @@ const fn fingers(shape: HandShape) -> Fingers {
                 [24.0, 31.0, 19.0],
             ],
             spread_deg: [0.0; 5],
+            across_deg: [0.0; 3],
         },
         HandShape::Flat => Fingers {
             curl_deg: [
-                [4.0, 6.0, 4.0],
+                [-12.0, -4.0, 0.0],
                 [2.0, 2.0, 1.0],
                 [2.0, 2.0, 1.0],
                 [2.0, 2.0, 1.0],
                 [2.0, 2.0, 1.0],
             ],
             spread_deg: [-10.0, -8.0, 0.0, -7.0, -14.0],
+            across_deg: [0.0; 3],
         },
         HandShape::Spread => Fingers {
             curl_deg: [
@@ -46,32 +50,40 @@ const fn fingers(shape: HandShape) -> Fingers {
                 [-2.0, 5.0, 3.0],
             ],
             spread_deg: [14.0, 9.0, 0.0, 7.0, 13.0],
+            across_deg: [0.0; 3],
         },
         HandShape::Grip => Fingers {
             curl_deg: [
-                [16.0, 22.0, 26.0],
+                [22.0, 10.0, 8.0],
                 [46.0, 52.0, 26.0],
                 [50.0, 54.0, 28.0],
                 [52.0, 56.0, 30.0],
                 [54.0, 56.0, 30.0],
             ],
             spread_deg: [0.0, -6.0, 0.0, -5.0, -10.0],
+            across_deg: [0.0, 14.0, 18.0],
         },
-        HandShape::Fist => {
-            Fingers { curl_deg: FIST_DEG, spread_deg: [-6.0, -8.0, 0.0, -6.0, -12.0] }
-        }
+        HandShape::Fist => Fingers {
+            curl_deg: FIST_DEG,
+            spread_deg: [0.0, -8.0, 0.0, -6.0, -12.0],
+            across_deg: FIST_THUMB_DEG,
+        },
         HandShape::Point => {
             let [thumb, _, middle, ring, little] = FIST_DEG;
             Fingers {
                 curl_deg: [thumb, [4.0, 6.0, 4.0], middle, ring, little],
-                spread_deg: [-6.0, -6.0, 0.0, -6.0, -12.0],
+                spread_deg: [0.0, -6.0, 0.0, -6.0, -12.0],
+                across_deg: FIST_THUMB_DEG,
             }
         }
     }
 }
 
+/// The thumb lies across the other fingers.
+const FIST_THUMB_DEG: [f64; 3] = [8.0, 38.0, 50.0];
+
 const FIST_DEG: [[f64; 3]; 5] = [
-    [24.0, 38.0, 44.0],
+    [22.0, 12.0, 4.0],
     [74.0, 92.0, 56.0],
     [78.0, 94.0, 56.0],
     [80.0, 94.0, 56.0],
@@ -106,7 +118,11 @@ pub(super) fn bend(
         };
         let mut rotation = rotations[side.joint(Limb::Hand)] * bend(away, shape.spread_deg[i]);
         for (segment, degrees) in shape.curl_deg[i].into_iter().enumerate() {
-            rotation = (rotation * bend(axis, degrees)).normalize();
+            rotation *= bend(axis, degrees);
+            if finger == Limb::Thumb1 {
+                rotation *= bend(-away, shape.across_deg[segment]);
+            }
+            rotation = rotation.normalize();
             rotations[first + segment] = rotation;
         }
     }

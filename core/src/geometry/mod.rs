@@ -13,7 +13,7 @@
 //! | `garment`, `hair`, `cut` | clothes and hair, cut from shells along scalar fields |
 //! | [`skeleton`], [`pose`] | joints, and clips and poses retargeted to a body |
 //! | [`stance`], `hand` | what joints and fingers are to do |
-//! | [`trunk`] | keeps arms out of trunks |
+//! | [`trunk`], `settle` | keep arms out of trunks, lay bodies on the ground |
 //! | [`points`] | poses single vertices in double precision |
 //! | [`shape`] | primitive shapes |
 
@@ -26,6 +26,7 @@ pub mod person;
 pub mod phenotype;
 pub mod points;
 pub mod pose;
+mod settle;
 pub mod shape;
 pub mod skeleton;
 mod solve;

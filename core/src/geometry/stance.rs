@@ -29,6 +29,8 @@ pub struct Stance {
     pub hands: [HandShape; 2],
     /// Left and right.
     pub feet: [Foot; 2],
+    /// Whether the body tilts until it rests on the ground.
+    pub rests: bool,
     freedom: Freedom,
 }
 
@@ -50,7 +52,7 @@ impl Stance {
             *angle = (*angle + lifted).clamp(low, high);
         }
         let (hands, feet, freedom) = (pose.hands, pose.feet, pose.freedom);
-        Self { root: root.normalize(), angles, hands, feet, freedom }
+        Self { root: root.normalize(), angles, hands, feet, rests: pose.rests, freedom }
     }
 
     /// Of a frame of a clip, whose collar bones, wrists and toes stay at rest.
@@ -82,6 +84,7 @@ impl Stance {
             angles,
             hands: [HandShape::Relaxed; 2],
             feet: [Foot::Free; 2],
+            rests: false,
             freedom: Freedom::default(),
         }
     }
@@ -111,6 +114,7 @@ impl Stance {
             angles,
             hands: nearer.hands,
             feet,
+            rests: self.rests && other.rests,
             freedom: nearer.freedom,
         }
     }
@@ -162,6 +166,7 @@ impl Stance {
             angles: self.angles.mirrored(),
             hands: [right, left],
             feet: [right_foot, left_foot],
+            rests: self.rests,
             freedom: self.freedom,
         }
     }
@@ -216,7 +221,7 @@ impl BallJoint {
     fn angles(self) -> ([Angle; 3], [f64; 3]) {
         use Limb as L;
         let trunk =
-            |all: [Trunk; 3], parts: f64| (all.map(|t| Angle::of_trunk(t)), [parts, -parts, parts]);
+            |all: [Trunk; 3], parts: f64| (all.map(Angle::of_trunk), [parts, -parts, parts]);
         let limb = |side: usize, all: [L; 3], forward: f64| {
             let out = if side == 0 { 1.0 } else { -1.0 };
             (all.map(|l| Angle::of_side(side, l)), [forward, out, -out])
@@ -431,10 +436,8 @@ mod tests {
             for frame in clip.frames() {
                 let plain = PosedSkeleton::new(&rest, frame, false);
                 let again = PosedSkeleton::of_stance(&rest, &Stance::of_clip(frame));
-                for joint in 0..JOINT_COUNT {
-                    let gap = plain
-                        .joint_m(joint, rest[joint])
-                        .distance(again.joint_m(joint, rest[joint]));
+                for (joint, &at_m) in rest.iter().enumerate() {
+                    let gap = plain.joint_m(joint, at_m).distance(again.joint_m(joint, at_m));
                     if gap > worst.0 {
                         worst = (gap, &clip.id, joint);
                     }
@@ -455,7 +458,8 @@ mod tests {
             let by: Vec<_> = offsets(draw).into_iter().map(|(n, d)| (n, d / 7.5)).collect();
             let skeleton = PosedSkeleton::of_stance(&rest, &stance.clone().varied(&by));
             let y = |joint: usize| skeleton.joint_m(joint, rest[joint]).y;
-            let [left, right] = Side::BOTH.map(|s| y(s.joint(super::super::skeleton::Limb::Foot)));
+            let [left, right] =
+                Side::BOTH.map(|s| y(s.joint(crate::geometry::skeleton::Limb::Foot)));
             let same = (left - right).abs() < 0.002;
             uneven += usize::from(!same);
             assert!((left - right).abs() < 0.12, "{} {left} {right}", pose.id);

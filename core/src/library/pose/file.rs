@@ -14,7 +14,8 @@
 //! `trunk`, `both`, `left` and `right` hold the angles of [`super::angle`] in degrees; those left
 //! out are 0, and a side's own come before those of `both`. `root` turns the pelvis (`turn`,
 //! `pitch`, `roll`, degrees). `hand` is a shape of the fingers; `foot` is `free`, `level` or
-//! `planted` on the ground, and the ankle follows.
+//! `planted` on the ground, and the ankle follows. Where `rests` is true, the body tilts until it
+//! rests on the ground.
 //! `freedom` (`trunk`, `arms`, `legs`, 0..1) says how much of a variation the pose can bear.
 
 use std::path::{Path, PathBuf};
@@ -148,7 +149,7 @@ fn pose(name: &str, value: &Value) -> Result<Pose> {
         return Err(problem(&format!("poses.{name}"), message));
     }
     let all = fields(value, name)?;
-    let parts = ["activity", "root", "trunk", "both", "left", "right", "freedom"];
+    let parts = ["activity", "rests", "root", "trunk", "both", "left", "right", "freedom"];
     known(all, name, &parts)?;
     let activity = match all.get("activity") {
         Some(Value::String(text)) if !text.is_empty() => text.clone(),
@@ -156,6 +157,14 @@ fn pose(name: &str, value: &Value) -> Result<Pose> {
             let got = other.map_or("nothing".to_owned(), ToString::to_string);
             let message = format!("must say what the person does, got {got}");
             return Err(problem(&format!("{name}.activity"), message));
+        }
+    };
+    let rests = match all.get("rests") {
+        None => false,
+        Some(Value::Bool(rests)) => *rests,
+        Some(other) => {
+            let message = format!("must be true or false, got {other}");
+            return Err(problem(&format!("{name}.rests"), message));
         }
     };
     let part = |part: &'static str| -> Result<Part> {
@@ -172,6 +181,7 @@ fn pose(name: &str, value: &Value) -> Result<Pose> {
         angles: Angles::default(),
         hands: [HandShape::Relaxed; 2],
         feet: [Foot::Free; 2],
+        rests,
         freedom: freedom(&part("freedom")?)?,
     };
     let trunk = part("trunk")?;
@@ -284,8 +294,8 @@ impl Part<'_> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::angle::{Limb, Trunk};
     use super::*;
+    use crate::library::pose::angle::{Limb, Trunk};
 
     fn read(pose: &str) -> Result<Pose> {
         let text = format!(r#"{{"poses": {{"p": {pose}}}}}"#);
@@ -295,13 +305,13 @@ mod tests {
     #[test]
     fn sides_come_before_both_and_the_rest_is_zero() {
         let pose = read(
-            r#"{"activity": "testing", "root": {"pitch": -90}, "trunk": {"head_twist": 12},
+            r#"{"activity": "testing", "rests": true, "root": {"pitch": -90}, "trunk": {"head_twist": 12},
             "both": {"knee_flexion": 30, "hip_flexion": 10, "hand": "fist", "foot": "planted"},
             "right": {"knee_flexion": 40, "hand": "point", "foot": "free"},
             "freedom": {"legs": 0.25}}"#,
         )
         .unwrap();
-        assert_eq!(pose.activity, "testing");
+        assert_eq!((pose.activity.as_str(), pose.rests), ("testing", true));
         assert_eq!(pose.root_deg, Root { pitch: -90.0, ..Root::default() });
         let mut angles = Angles::default();
         angles.trunk_deg[Trunk::HeadTwist as usize] = 12.0;
@@ -342,6 +352,7 @@ mod tests {
                 r#"{"activity": "a", "both": {"foot": 3}}"#,
                 "p.both.foot: must be one of free, level, planted",
             ),
+            (r#"{"activity": "a", "rests": 1}"#, "p.rests: must be true or false, got 1"),
             (r#"{"activity": "a", "root": {"roll": 400}}"#, "p.root.roll: must be a number from"),
             (r#"{"activity": "a", "freedom": {"arms": 2}}"#, "p.freedom.arms: must be a number"),
             (

@@ -34,6 +34,9 @@ pub struct Pose {
     pub hands: [HandShape; 2],
     /// Left and right.
     pub feet: [Foot; 2],
+    /// Whether the body tilts until it rests on the ground at both ends: who lies, sits on the
+    /// floor or props himself up.
+    pub rests: bool,
     /// Share of the variation that trunk, arms and legs take part in, 0..1.
     pub freedom: Freedom,
 }
