@@ -9,15 +9,19 @@
 //! | [`body`] | joints, keypoints, contact points and measures of a body at rest |
 //! | [`person`] | a dressed person at rest: skin, eyes, hair and clothes as one mesh |
 //! | [`surface`] | what the parts of a person look like |
-//! | `garment`, `hair`, `cut` | clothes and hair, cut from shells along scalar fields |
+//! | `garment`, `cut` | clothes, cut from a shell along scalar fields |
+//! | `hair`, `beard`, `headwear`, `glasses` | what grows and sits on the head |
 //! | [`skeleton`], [`pose`] | joints, and clips retargeted to a body |
 //! | [`points`] | poses single vertices in double precision |
 //! | [`shape`] | primitive shapes |
 
+mod beard;
 pub mod body;
 mod cut;
 mod garment;
+mod glasses;
 mod hair;
+mod headwear;
 pub mod person;
 pub mod phenotype;
 pub mod points;

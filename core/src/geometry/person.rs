@@ -13,11 +13,11 @@ use glam::Vec3;
 use super::body::{RestBody, SOLE_M};
 use super::cut::{Builder, Refined, Rim, Surface as Cloth, smooth_normals};
 use super::garment::{self, Cuts, Fields};
-use super::{hair, phenotype};
+use super::{beard, glasses, hair, headwear, phenotype};
 use crate::base::hash::Hasher;
 use crate::library::figure::{Figure, GroupId, LOD_COUNT};
 use crate::library::mesh::{Mesh, SkinVertex};
-use crate::scene::{Body, HairStyle, Look, Person};
+use crate::scene::{BeardStyle, Body, Glasses, HairStyle, HeadwearKind, Look, Person};
 
 /// What a part of a person is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -28,8 +28,18 @@ pub enum PartKind {
     Eyes,
     /// Teeth.
     Teeth,
-    /// Hair on the head.
+    /// What lies under the locks of the hair, and hair without locks.
     Hair,
+    /// Locks.
+    Locks,
+    /// Locks that are a little lighter.
+    LightLocks,
+    /// On the head.
+    Headwear,
+    /// Frame of the glasses.
+    Frame,
+    /// Dark lenses.
+    Lenses,
     /// Garment of the upper body.
     Top,
     /// Garment of the legs.
@@ -149,6 +159,7 @@ impl MeshKey {
         let (top, bottom) = (&outfit.top, &outfit.bottom);
         let mut hasher = Hasher::new();
         hasher.bytes(&[sex as u8, look.hair as u8, bottom.kind as u8]);
+        hasher.bytes(&[look.beard as u8, look.headwear.kind as u8, look.glasses as u8]);
         let sizes = [age_years, stature_m, muscle, weight, proportions, african, asian, european];
         let cuts = [cup, firmness, top.sleeve, top.neckline, top.looseness_m];
         let ends = [bottom.length, bottom.looseness_m];
@@ -170,7 +181,7 @@ pub fn dress(figure: &Figure, person: &Person, rest: &RestBody, lod: usize) -> D
     let mut out = Parts { builder: Builder::default(), parts: Vec::new() };
     add_skin(&mut out, figure, rest, &cuts, lod);
     add_face(&mut out, figure, person, rest, lod);
-    add_hair(&mut out, figure, &person.look, rest, lod);
+    add_head(&mut out, figure, person, rest, lod);
     add_clothes(&mut out, figure, rest, &cuts, lod);
     let mut mesh = out.builder.mesh;
     bound(&mut mesh);
@@ -208,23 +219,37 @@ fn opens_mouth(look: &Look) -> bool {
     })
 }
 
-fn add_hair(out: &mut Parts, figure: &Figure, look: &Look, rest: &RestBody, lod: usize) {
-    if look.hair == HairStyle::Bald {
+/// What grows and sits on the head.
+fn add_head(out: &mut Parts, figure: &Figure, person: &Person, rest: &RestBody, lod: usize) {
+    let look = &person.look;
+    let bare = look.hair == HairStyle::Bald && look.headwear.kind == HeadwearKind::None;
+    let shaven = matches!(look.beard, BeardStyle::None | BeardStyle::Stubble);
+    if bare && shaven && look.glasses == Glasses::None {
         return;
     }
-    let roots = Evaluated::new(figure, rest, GroupId::HairCap, lod);
-    let scale = rest.head_scale as f32 * rest.shape.scale;
-    let Some((positions, normals)) = hair::cap(figure, look.hair, lod, scale, &roots.positions)
-    else {
-        return;
-    };
-    let cap = out.builder.add_where(&roots.with(&positions, &normals), |_| true);
-    let mut end = cap.end;
-    if hair::has_curtain(look.hair) {
-        let curtain = Evaluated::new(figure, rest, GroupId::HairCurtain, lod);
-        end = out.builder.add_where(&curtain.surface(), |_| true).end;
+    let head = hair::Head::new(figure, person, rest, lod);
+    let [base, locks, light] = hair::add(&mut out.builder.mesh, &head, look.hair);
+    // Hair without locks has no light ones beside which it would have to be dark.
+    let plain = locks.is_empty() && light.is_empty();
+    out.add(if plain { PartKind::Locks } else { PartKind::Hair }, base, true);
+    out.add(PartKind::Locks, locks, true);
+    out.add(PartKind::LightLocks, light, true);
+    if !shaven {
+        let face = Evaluated::new(figure, rest, GroupId::Skin, lod);
+        let [base, locks] =
+            beard::add(&mut out.builder, figure, &head, look.beard, &face.surface());
+        out.add(PartKind::Hair, base, true);
+        out.add(PartKind::Locks, locks, true);
     }
-    out.add(PartKind::Hair, cap.start..end, true);
+    let range = headwear::add(&mut out.builder.mesh, &head);
+    out.add(PartKind::Headwear, range, true);
+    if look.glasses != Glasses::None {
+        let eyes = Evaluated::new(figure, rest, GroupId::Eyes, 0);
+        let [frame, lenses] =
+            glasses::add(&mut out.builder.mesh, &head, look.glasses, &eyes.positions);
+        out.add(PartKind::Frame, frame, true);
+        out.add(PartKind::Lenses, lenses, true);
+    }
 }
 
 fn add_clothes(out: &mut Parts, figure: &Figure, rest: &RestBody, cuts: &Cuts, lod: usize) {
@@ -282,19 +307,12 @@ mod tests {
     use super::*;
     use crate::geometry::body::rest_body;
     use crate::geometry::phenotype::tests::average;
-    use crate::scene::{Bottom, BottomKind, Outfit, Placement, Pose, Sex, Shoes, Top};
+    use crate::scene::{Bottom, BottomKind, Headwear, Outfit, Placement, Pose, Sex, Shoes, Top};
     use glam::{DQuat, DVec3};
 
     fn person(i: usize) -> Person {
         let x = (i % 4) as f64 / 3.0;
         let sex = if i.is_multiple_of(2) { Sex::Male } else { Sex::Female };
-        let hair = [
-            HairStyle::Bald,
-            HairStyle::Cropped,
-            HairStyle::Short,
-            HairStyle::Afro,
-            HairStyle::Long,
-        ];
         let kind = if i.is_multiple_of(3) { BottomKind::Shorts } else { BottomKind::Trousers };
         let face = vec![("jawOpen".to_owned(), x), ("nose-hump-incr".to_owned(), 0.4)];
         Person {
@@ -316,8 +334,14 @@ mod tests {
             },
             look: Look {
                 skin_color: [0.5, 0.3, 0.2],
-                hair: hair[i % 5],
+                hair: HairStyle::ALL[i % HairStyle::ALL.len()],
                 hair_color: [0.05; 3],
+                beard: BeardStyle::ALL[i % BeardStyle::ALL.len()],
+                headwear: Headwear {
+                    kind: HeadwearKind::ALL[i / 3 % HeadwearKind::ALL.len()],
+                    color: [0.3; 3],
+                },
+                glasses: Glasses::ALL[i / 2 % Glasses::ALL.len()],
                 iris_color: [0.1, 0.05, 0.02],
                 face,
             },
@@ -478,11 +502,14 @@ mod tests {
         elsewhere.placement.position_m = DVec3::X;
         elsewhere.outfit.top.color = [0.9; 3];
         assert_eq!(MeshKey::new(&elsewhere), key);
-        let changes: [fn(&mut Person); 6] = [
+        let changes: [fn(&mut Person); 9] = [
             |p| p.body.cup += 1e-9,
             |p| p.body.sex = Sex::Female,
             |p| p.look.face[1].1 += 0.01,
             |p| p.look.hair = HairStyle::Short,
+            |p| p.look.beard = BeardStyle::Goatee,
+            |p| p.look.headwear.kind = HeadwearKind::Beanie,
+            |p| p.look.glasses = Glasses::Sunglasses,
             |p| p.outfit.bottom.kind = BottomKind::Shorts,
             |p| p.outfit.top.sleeve += 0.01,
         ];

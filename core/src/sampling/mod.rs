@@ -21,6 +21,7 @@ mod people;
 mod place;
 mod poisson_disk;
 mod quantile;
+mod style;
 mod value;
 
 pub use value::number;

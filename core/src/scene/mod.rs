@@ -12,7 +12,8 @@ mod person;
 
 pub use camera::Camera;
 pub use person::{
-    Body, Bottom, BottomKind, HairStyle, Look, Outfit, Person, Pose, Sex, Shoes, Top,
+    BeardStyle, Body, Bottom, BottomKind, Glasses, HairStyle, Headwear, HeadwearKind, Look, Outfit,
+    Person, Pose, Sex, Shoes, Top,
 };
 
 /// Everything that one frame shows.
