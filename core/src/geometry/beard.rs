@@ -97,7 +97,7 @@ fn add_locks(builder: &mut Builder, head: &Head, shell: &Surface<'_>, field: &[f
             let stray = Vec3::new(dice.range(-0.25, 0.25), 0.0, dice.range(-0.2, 0.2));
             let down = Vec3::NEG_Y + aside + stray;
             let down = (down - n * down.dot(n) * 0.85).normalize_or(Vec3::NEG_Y);
-            let rise = dice.range(0.08, 0.30);
+            let rise = dice.range(0.05, 0.26);
             let mut path = Path::default();
             for i in 0..points {
                 let t = i as f32 / (points - 1) as f32;

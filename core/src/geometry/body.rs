@@ -19,8 +19,8 @@ pub const SOLE_M: f32 = 0.012;
 const DENSITY_KG_M3: f64 = 980.0;
 /// Clothes and the difference of the levels of detail, for bounds.
 const COVER_M: f64 = 0.05;
-/// Hair, likewise.
-const HAIR_M: f64 = 0.09;
+/// Hair and hats, likewise.
+const HAIR_M: f64 = 0.15;
 
 /// A point that moves with the body.
 #[derive(Clone, Copy, Debug, PartialEq)]

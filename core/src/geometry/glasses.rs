@@ -7,6 +7,7 @@ use std::ops::Range;
 use glam::Vec3;
 
 use super::hair::Head;
+use super::hair::scalp::{COLUMNS, ROWS};
 use super::hair::strand::{Path, push, sin_cos_turns, tube};
 use crate::library::mesh::Mesh;
 use crate::scene::Glasses;
@@ -110,18 +111,13 @@ impl<'a> Fit<'a> {
     /// From the rim's outer upper corner to behind the ear, along the side of the head.
     fn temple(&self, side: f32) -> Path {
         let a = self.at(side, 0.05, 1.0);
-        let over_ear = self.head.scalp.frame.world(Vec3::new(0.0765 * side, 0.7480, 0.012));
-        let end = self.head.scalp.frame.world(Vec3::new(0.0745 * side, 0.7260, -0.006));
+        // The hairline passes over the ear a little behind the head's middle.
+        let column = if side > 0.0 { 18.0 } else { COLUMNS as f32 - 18.0 };
+        let over = self.head.scalp.at(ROWS as f32, column);
+        let over_ear = over.p + Vec3::new(0.0025 * side, -0.001, 0.0) * self.s;
+        let end = over_ear + Vec3::new(-0.003 * side, -0.024, -0.016) * self.s;
         let mut points: Vec<Vec3> = (0..=6).map(|i| a.lerp(over_ear, i as f32 / 6.0)).collect();
         points.push(end);
-        for p in &mut points[1..] {
-            if let Some((d, n)) = self.head.near.surface(*p) {
-                let gap = 0.002 * self.s - d;
-                if gap > 0.0 {
-                    *p += Vec3::X * (n.x.signum() * gap);
-                }
-            }
-        }
         Path { outward: vec![Vec3::Y; points.len()], points }
     }
 

@@ -139,7 +139,7 @@ impl Hat<'_> {
         for row in 0..=rows {
             let t = row as f32 / rows as f32;
             let line = columns.iter().map(|&column| {
-                let (p, n) = self.under(column % COLUMNS, 1.0);
+                let (p, n) = self.under(column % COLUMNS, if row == 0 { 0.93 } else { 1.0 });
                 let off = (column as f32 - COLUMNS as f32) / (reach as f32 + 0.5);
                 let out = (1.0 - off * off).max(0.0).sqrt();
                 let forwards = Vec3::new(0.10 * off, -0.16 - 0.10 * t, 1.0);
@@ -187,13 +187,13 @@ impl Hat<'_> {
         };
         // Share of the edge's width and height over it, from the middle of the top downwards.
         let crown: &[(f32, f32)] = &[
-            (0.02, 0.096),
-            (0.35, 0.098),
-            (0.62, 0.108),
-            (0.76, 0.106),
-            (0.84, 0.092),
-            (0.91, 0.060),
-            (0.965, 0.028),
+            (0.02, 0.083),
+            (0.30, 0.084),
+            (0.52, 0.091),
+            (0.66, 0.092),
+            (0.77, 0.083),
+            (0.87, 0.060),
+            (0.95, 0.030),
             (1.0, 0.0),
         ];
         let rows: Vec<Vec<Vec3>> = crown
@@ -229,7 +229,7 @@ impl Hat<'_> {
             for i in 0..=across {
                 let (sin, cos) = sin_cos_turns(i as f32 / across as f32);
                 // The opening is higher than wide, and ends under the chin.
-                let open = 0.112 + 0.036 * sin * sin + 0.024 * (-cos).max(0.0);
+                let open = 0.093 + 0.046 * sin * sin + 0.028 * (-cos).max(0.0);
                 let (s, c) = sin_cos_turns(open + (0.5 - open) * t);
                 directions.push(Vec3::new(s * sin, s * cos, c));
             }
@@ -267,7 +267,7 @@ impl Hat<'_> {
 
     /// How far from the middle of the head a scarf lies in a direction.
     fn reach(&self, center: Vec3, direction: Vec3) -> f32 {
-        const FAR_M: f32 = 0.27;
+        const FAR_M: f32 = 0.205;
         let clear = self.s * 0.009;
         let mut r = FAR_M * self.s;
         for _ in 0..40 {

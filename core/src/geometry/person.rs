@@ -377,7 +377,7 @@ mod tests {
     #[test]
     fn every_mesh_is_sound() {
         let figure = Figure::built_in().unwrap();
-        for i in 0..10 {
+        for i in 0..15 {
             for lod in 0..LOD_COUNT {
                 let Dressed { mesh, parts } = dressed(&figure, i, lod);
                 let n = mesh.positions.len();
@@ -490,6 +490,132 @@ mod tests {
             let least = [100, 60, 20, 8, 3][lod];
             assert!(seen >= least, "person {i} level {lod}: only {seen} vertices were tested");
             assert!(outside == 0, "person {i} level {lod}: {outside} of {seen} vertices outside");
+        }
+    }
+
+    /// Average people with every style: hair, beard, headwear and glasses by number.
+    fn groomed(hair: HairStyle, beard: usize, headwear: usize, glasses: usize) -> Person {
+        let sex = if beard > 0 { Sex::Male } else { Sex::Female };
+        let mut p = person(1);
+        p.body = average(sex);
+        p.look.face = Vec::new();
+        p.look.hair = hair;
+        p.look.beard = BeardStyle::ALL[beard];
+        p.look.headwear.kind = HeadwearKind::ALL[headwear];
+        p.look.glasses = Glasses::ALL[glasses];
+        p
+    }
+
+    fn triangles_of(d: &Dressed, kinds: &[PartKind]) -> Vec<[[f32; 3]; 3]> {
+        let parts = d.parts.iter().filter(|p| kinds.contains(&p.kind));
+        let range = parts.flat_map(|p| p.triangles.clone());
+        range.map(|t| d.mesh.triangles[t as usize].map(|v| d.mesh.positions[v as usize])).collect()
+    }
+
+    const HAIR: [PartKind; 3] = [PartKind::Hair, PartKind::Locks, PartKind::LightLocks];
+
+    #[test]
+    fn every_style_is_its_own_and_gets_simpler_with_distance() {
+        let figure = Figure::built_in().unwrap();
+        let mut seen: Vec<Vec<[[f32; 3]; 3]>> = Vec::new();
+        for style in HairStyle::ALL {
+            let p = groomed(style, 0, 0, 0);
+            let rest = rest_body(&figure, &p.body, &p.look.face).unwrap();
+            let levels: Vec<_> = (0..LOD_COUNT)
+                .map(|lod| triangles_of(&dress(&figure, &p, &rest, lod), &HAIR))
+                .collect();
+            let count: Vec<usize> = levels.iter().map(Vec::len).collect();
+            println!("{style:?}: {count:?} triangles");
+            assert!(count.iter().all(|n| (*n == 0) == (style == HairStyle::Bald)));
+            assert!(style == HairStyle::Bald || count.windows(2).all(|n| n[1] < n[0]), "{style:?}");
+            assert!(!seen.contains(&levels[0]), "{style:?}");
+            seen.extend(levels.into_iter().take(1));
+        }
+    }
+
+    /// Most hair lies outside the skin at rest; what is under it are the roots.
+    #[test]
+    fn hair_does_not_pierce_head_or_shoulders() {
+        let figure = Figure::built_in().unwrap();
+        for (i, style) in HairStyle::ALL.into_iter().enumerate().skip(1) {
+            for lod in 0..LOD_COUNT {
+                let mut p = groomed(style, 0, 0, 0);
+                p.body = person(i).body;
+                let rest = rest_body(&figure, &p.body, &p.look.face).unwrap();
+                let head = hair::Head::new(&figure, &p, &rest, lod);
+                let s = head.scalp.frame.scale;
+                let all = triangles_of(&dress(&figure, &p, &rest, lod), &HAIR);
+                let points: Vec<Vec3> =
+                    all.iter().flatten().map(|q| Vec3::from_array(*q)).collect();
+                let deep = |q: &&Vec3| head.near.surface(**q).is_some_and(|f| f.0 < -0.006 * s);
+                let share = points.iter().filter(deep).count() as f32 / points.len() as f32;
+                println!("{style:?} {lod}: {:.2} % of {}", 100.0 * share, points.len());
+                assert!(share < 0.02, "{style:?} level {lod}: {share}");
+            }
+        }
+    }
+
+    #[test]
+    fn glasses_and_hats_are_the_same_on_both_sides() {
+        let figure = Figure::built_in().unwrap();
+        for (headwear, glasses) in [(1, 1), (3, 2), (0, 3)] {
+            let p = groomed(HairStyle::Bald, 0, headwear, glasses);
+            let rest = rest_body(&figure, &p.body, &p.look.face).unwrap();
+            for lod in 0..LOD_COUNT {
+                let kinds = [PartKind::Headwear, PartKind::Frame, PartKind::Lenses];
+                let all = triangles_of(&dress(&figure, &p, &rest, lod), &kinds);
+                assert!(all.len() > 40, "{headwear} {glasses} {lod}");
+                let points: Vec<Vec3> =
+                    all.iter().flatten().map(|q| Vec3::from_array(*q)).collect();
+                for q in points.iter().step_by(7) {
+                    let other = *q * Vec3::new(-1.0, 1.0, 1.0);
+                    let gap = points.iter().map(|r| (*r - other).length()).fold(1.0, f32::min);
+                    assert!(gap < 0.0015, "{headwear} {glasses} {lod}: {q} {gap}");
+                }
+            }
+        }
+    }
+
+    /// Bounds of what a person covers hold whatever grows and sits on the head.
+    #[test]
+    fn reach_bounds_hair_and_hats() {
+        let figure = Figure::built_in().unwrap();
+        for (i, style) in HairStyle::ALL.into_iter().enumerate() {
+            let mut p = person(i);
+            p.look.hair = style;
+            let rest = rest_body(&figure, &p.body, &p.look.face).unwrap();
+            let mesh = dress(&figure, &p, &rest, 0).mesh;
+            for (q, s) in mesh.positions.iter().zip(&mesh.skin) {
+                for (&j, _) in s.joints.iter().zip(&s.weights).filter(|w| *w.1 > 0) {
+                    let j = usize::from(j);
+                    let head = rest.heads_m[j].as_vec3();
+                    let far = f64::from((Vec3::from_array(*q) - head).length());
+                    assert!(far <= rest.reach_m[j], "{style:?} {i} joint {j}: {far}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn beards_sit_on_the_face_and_hats_hide_no_eyes() {
+        let figure = Figure::built_in().unwrap();
+        for beard in 2..BeardStyle::ALL.len() {
+            let p = groomed(HairStyle::Bald, beard, 1 + beard % 4, 0);
+            let rest = rest_body(&figure, &p.body, &p.look.face).unwrap();
+            let head = hair::Head::new(&figure, &p, &rest, 0);
+            let d = dress(&figure, &p, &rest, 0);
+            let local = |kinds: &[PartKind]| -> Vec<Vec3> {
+                let points = triangles_of(&d, kinds).into_iter().flatten();
+                points.map(|q| head.scalp.frame.local(Vec3::from_array(q))).collect()
+            };
+            let hairs = local(&HAIR);
+            assert!(hairs.len() > 300, "{beard}");
+            for q in &hairs {
+                assert!((0.56..0.76).contains(&q.y) && q.z > 0.0, "{beard} {q}");
+            }
+            let before_the_eyes =
+                |q: &&Vec3| q.x.abs() < 0.05 && q.z > 0.06 && (0.70..0.745).contains(&q.y);
+            assert_eq!(local(&[PartKind::Headwear]).iter().filter(before_the_eyes).count(), 0);
         }
     }
 

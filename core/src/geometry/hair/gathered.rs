@@ -84,7 +84,7 @@ fn ponytail(grower: &Grower<'_>) -> Path {
 
 fn ponytail_radius(t: f32) -> f32 {
     let swell = 0.010 + 0.013 * super::step(0.02, 0.22, t);
-    swell * (1.0 - 0.75 * super::step(0.35, 1.0, t))
+    swell * (1.0 - 0.65 * super::step(0.35, 0.92, t)) * (1.0 - 0.9 * super::step(0.88, 1.0, t))
 }
 
 fn ponytail_locks(grower: &Grower<'_>, mesh: &mut Mesh, tone: usize) {
@@ -179,17 +179,17 @@ fn braid(grower: &Grower<'_>, mesh: &mut Mesh, side: f32, sides: usize) {
     let head = grower.head;
     let s = grower.scale();
     let frame = &head.scalp.frame;
-    let tie = style::side_tie(side);
+    let tie = grower.side_tie(side);
     let p = frame.world(tie);
     let n = head.near.surface(p).map_or(Vec3::X * side, |found| found.1);
-    let root = Root { p, n, local: tie, depth: 0.0, row: 0.0, column: 0.0 };
+    let root = Root { p, n, local: tie, depth: 0.0, column: 0.0 };
     let flow = |l: Vec3, _: &Root| {
         // Forwards over the shoulder, then straight down.
         let neck = super::step(0.55, 0.58, l.y) * super::step(0.655, 0.635, l.y);
         Vec3::new(0.05 * side * neck, -1.0, 1.1 * neck + 0.25 * super::step(0.50, 0.56, l.y))
     };
     let comb = Comb { near: &head.near, frame, flow: &flow, yields: 0.4, clings: 0.0, hugs_y: 2.0 };
-    let middle = comb.line(&root, (0.004 * s, 0.012 * s), |_, l| l.y < 0.44, |_| 0.013 * s);
+    let middle = comb.line(&root, (0.0, 0.012 * s), |_, l| l.y < 0.44, |_| 0.013 * s);
     let points = [30, 16, 9, 5, 4][head.lod];
     let middle = middle.resampled(points);
     let length = middle.length();

@@ -147,6 +147,11 @@ impl Grower<'_> {
         self.head.scalp.frame.scale
     }
 
+    /// Whether the level is so coarse that there are no locks.
+    fn alone(&self) -> bool {
+        self.head.lod >= LEVELS.len()
+    }
+
     /// Where the parting runs, local.
     fn part_x(&self) -> f32 {
         match self.style {
@@ -166,6 +171,9 @@ impl Grower<'_> {
         let (amount, size) = cap.lump;
         let lump = lump(root.local / size, self.head.seed);
         let mut thick = cap.thick_m * (1.0 - left * left) * top * (1.0 + amount * lump);
+        if let (true, Some(locks)) = (self.alone(), &self.form.locks) {
+            thick += 0.5 * (locks.clear_m.0 + locks.layer_m) * (1.0 - left * left);
+        }
         if matches!(self.style, HairStyle::SideParting | HairStyle::Braids | HairStyle::Bob) {
             // A furrow along the parting.
             let off = (root.local.x - self.part_x()).abs();
@@ -225,10 +233,23 @@ impl Grower<'_> {
         self.head.scalp.frame.local(root.p + root.n * (0.012 * self.scale()))
     }
 
+    /// Tie behind an ear, local.
+    fn side_tie(&self, side: f32) -> Vec3 {
+        let frame = &self.head.scalp.frame;
+        let p = frame.world(style::side_tie(side));
+        let off = |(d, n): (f32, Vec3)| p + n * (0.010 * frame.scale - d);
+        frame.local(self.head.near.surface(p).map_or(p, off))
+    }
+
     /// The line of one lock.
     fn line(&self, locks: &Locks, root: &Root, dice: &mut Dice) -> Path {
         let s = self.scale();
-        let (part_x, tie) = (self.part_x(), self.tie());
+        let part_x = self.part_x();
+        let tie = if self.form.tail == Tail::Braids {
+            self.side_tie(if root.local.x > part_x { 1.0 } else { -1.0 })
+        } else {
+            self.tie()
+        };
         let stray = Vec3::new(dice.range(-1.0, 1.0), dice.range(-1.0, 1.0), dice.range(-1.0, 1.0));
         let stray = stray * if locks.clings > 0.9 { 0.02 } else { 0.16 };
         let flow = |l: Vec3, root: &Root| {
@@ -246,7 +267,9 @@ impl Grower<'_> {
         let start = (cap - 0.002 * s).max(0.0);
         match locks.length {
             Length::Between(low, high) => {
-                let length = s * dice.range(low, high);
+                // Cut shorter at the nape.
+                let nape = 0.45 + 0.55 * step(0.68, 0.775, root.local.y);
+                let length = s * dice.range(low, high) * nape;
                 let steps = if length > 0.08 * s { 10.0 } else { 5.0 };
                 let clear = |way: f32| {
                     let t = (way / length).min(1.0);
@@ -260,10 +283,7 @@ impl Grower<'_> {
                 comb.line(root, (start, 0.014 * s), |_, l| l.y < y, clear)
             }
             Length::ToTie => {
-                let side = if root.local.x > part_x { 1.0 } else { -1.0 };
-                let braids = self.form.tail == Tail::Braids;
-                let goal = if braids { style::side_tie(side) } else { tie };
-                let near = |l: Vec3| (l - goal).length() < 0.014;
+                let near = |l: Vec3| (l - tie).length() < 0.016;
                 let clear = |way: f32| start + (end_m - start) * step(0.0, 0.05 * s, way);
                 comb.line(root, (start, 0.012 * s), |_, l| near(l), clear)
             }
@@ -312,6 +332,8 @@ impl Grower<'_> {
         }
         match self.style {
             HairStyle::Balding => step(0.5, 0.9, style::wreath(root.local)),
+            // So short that ends beyond the border would be specks.
+            HairStyle::Cropped => step(0.003, 0.009, root.depth),
             // Ends at the hairline frame the face.
             HairStyle::Short
             | HairStyle::Pixie
@@ -345,7 +367,9 @@ impl Grower<'_> {
             let start = (self.cap_m(&root) - 0.003 * s).max(0.001);
             let uneven = lump(Vec3::new(column as f32 * 0.7, 0.0, 3.0), self.head.seed);
             let end = end_y + 0.02 * uneven;
-            let clear = |_: f32| locks.clear_m.0 * s;
+            // Without locks over it the sheet stands for them.
+            let off = if self.alone() { locks.clear_m.1 + locks.layer_m } else { locks.clear_m.0 };
+            let clear = |_: f32| off * s;
             let path = comb.line(&root, (start, 0.014 * s), |_, l| l.y < end, clear);
             let path = path.resampled(rows);
             let mut way = 0.0;

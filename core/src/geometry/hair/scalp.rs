@@ -48,8 +48,6 @@ pub(in crate::geometry) struct Root {
     pub local: Vec3,
     /// Distance to the hairline on the template, metres.
     pub depth: f32,
-    /// 0 the crown .. [`ROWS`] the hairline.
-    pub row: f32,
     /// 0 .. [`COLUMNS`].
     pub column: f32,
 }
@@ -95,7 +93,6 @@ impl Scalp {
                     n,
                     local: local[v],
                     depth: figure.data().hair_depth[v],
-                    row: row as f32,
                     column: column as f32,
                 });
             }
@@ -124,7 +121,6 @@ impl Scalp {
             n: v(|r| r.n).normalize_or(Vec3::Y),
             local: v(|r| r.local),
             depth: upper + (lower - upper) * t,
-            row,
             column,
         }
     }

@@ -101,7 +101,9 @@ impl Path {
             let angle = std::f32::consts::TAU * (way / turn_m + phase);
             let radius = radius_m * step(0.0, 1.5 * turn_m, way);
             let (s, c) = (libm::sinf(angle), libm::cosf(angle));
-            self.points[i] += (side * c + out * (0.6 + s)) * radius;
+            // Long waves lie flat.
+            let deep = (0.035 / turn_m).min(1.0);
+            self.points[i] += (side * c + out * ((0.6 + s) * deep)) * radius;
             let lean = (3.0 * radius_m / turn_m).min(0.8);
             self.outward[i] = (before.outward[i] + (side * c + out * s) * lean).normalize_or(out);
         }

@@ -103,15 +103,15 @@ const SMOOTH: Cap =
     Cap { thick_m: 0.010, taper_m: 0.035, side: 0.8, lump: (0.10, 0.03), ragged: 0.7 };
 
 const LOOSE: Locks = Locks {
-    count: 560,
+    count: 760,
     length: Length::Between(0.024, 0.045),
-    width_m: 0.011,
+    width_m: 0.0085,
     clear_m: (0.003, 0.010),
     layer_m: 0.010,
     yields: 0.6,
     clings: 0.6,
     curl: None,
-    points: 6,
+    points: 5,
     flow: Flow::Whorl,
 };
 
@@ -121,7 +121,20 @@ pub(super) fn form(style: HairStyle) -> Option<Form> {
     let close = Cap { thick_m: 0.0045, taper_m: 0.022, side: 0.8, lump: (0.08, 0.02), ragged: 0.5 };
     Some(match style {
         HairStyle::Bald => return None,
-        HairStyle::Cropped => Form { cap: close, ..none },
+        HairStyle::Cropped => Form {
+            cap: Cap { thick_m: 0.0035, taper_m: 0.030, ragged: 1.2, ..close },
+            locks: Some(Locks {
+                count: 900,
+                length: Length::Between(0.005, 0.009),
+                width_m: 0.0040,
+                clear_m: (0.002, 0.0045),
+                layer_m: 0.0,
+                clings: 0.2,
+                points: 3,
+                ..LOOSE
+            }),
+            ..none
+        },
         HairStyle::Balding => Form {
             cap: Cap { thick_m: 0.007, taper_m: 0.020, side: 1.0, ..close },
             locks: Some(Locks {
@@ -143,9 +156,9 @@ pub(super) fn form(style: HairStyle) -> Option<Form> {
                 ragged: 0.7,
             },
             locks: Some(Locks {
-                count: 760,
-                length: Length::Between(0.009, 0.016),
-                width_m: 0.007,
+                count: 1000,
+                length: Length::Between(0.010, 0.017),
+                width_m: 0.0052,
                 clear_m: (0.002, 0.011),
                 layer_m: 0.007,
                 clings: 0.0,
@@ -220,8 +233,8 @@ pub(super) fn form(style: HairStyle) -> Option<Form> {
                 layer_m: 0.012,
                 yields: 0.5,
                 clings: 0.1,
-                curl: Some((0.0085, 0.036)),
-                points: 22,
+                curl: Some((0.0095, 0.048)),
+                points: 24,
                 flow: Flow::Fall,
             }),
             sheet_y: Some(0.69),
@@ -236,7 +249,7 @@ pub(super) fn form(style: HairStyle) -> Option<Form> {
                 clear_m: (0.010, 0.018),
                 layer_m: 0.008,
                 clings: 0.35,
-                points: 9,
+                points: 11,
                 flow: Flow::Fall,
                 ..LOOSE
             }),
@@ -306,7 +319,7 @@ pub(super) fn side_tie(side: f32) -> Vec3 {
 }
 
 /// Direction of the hair at a local place for a root; `part_x` is where the parting runs and `tie`
-/// the place of the tie at the back.
+/// the place of the tie to which the root's hair goes.
 pub(super) fn direction(flow: Flow, l: Vec3, root: &Root, part_x: f32, tie: Vec3) -> Vec3 {
     let away = if root.local.x > part_x { 1.0 } else { -1.0 };
     let top = step(0.772, 0.806, l.y);
@@ -333,22 +346,27 @@ pub(super) fn direction(flow: Flow, l: Vec3, root: &Root, part_x: f32, tie: Vec3
         }
         Flow::Burst => l - Vec3::new(0.0, 0.755, 0.03),
         Flow::Fall => {
-            let over = Vec3::new(away, -0.30, -0.15 - 0.5 * front);
+            let crown = step(0.05, 0.0, l.z);
+            let over = Vec3::new(away, -0.30, -0.15 - 0.5 * front - 1.1 * crown);
             let face = step(0.055, 0.09, l.z) * step(0.60, 0.66, l.y);
             let hang = Vec3::new(away * (0.05 + 0.5 * face), -1.0, -0.10 - 0.65 * face);
-            // On the shoulders it parts: forwards or backwards.
-            let low = 1.0 - step(0.57, 0.63, l.y);
-            let aside = if root.local.z > 0.045 { 0.45 } else { -0.35 };
-            hang.lerp(over, top * (1.0 - step(0.035, 0.070, l.x.abs())))
-                + Vec3::new(-0.05 * away, 0.0, aside) * low
+            let hang = hang.lerp(over, top * (1.0 - step(0.035, 0.070, l.x.abs())));
+            // Before the shoulders it gathers in front of them or behind them.
+            let low = 1.0 - step(0.60, 0.68, l.y);
+            let in_front = root.local.z > 0.060;
+            let goal = if in_front {
+                Vec3::new(0.086 * away, 0.0, 0.125)
+            } else {
+                Vec3::new(l.x.clamp(-0.095, 0.095), 0.0, -0.085)
+            };
+            hang + Vec3::new((goal.x - l.x) * 16.0, 0.0, (goal.z - l.z) * 12.0) * low
         }
         Flow::Back => tie - l,
         Flow::Sides => {
-            let d = side_tie(away) - l;
             // Over the head first, then behind the ear.
-            let behind =
-                Vec3::new(0.0, 0.0, -0.05) * step(0.70, 0.76, l.y) * step(-0.02, 0.06, l.z);
-            d + behind + Vec3::new(0.05 * away, 0.0, 0.0) * top
+            let ahead = step(-0.02, 0.06, l.z);
+            let behind = Vec3::new(0.0, 0.0, -0.05) * step(0.70, 0.76, l.y) * ahead;
+            tie - l + behind + Vec3::new(0.05 * away, 0.0, 0.0) * top
         }
     }
 }

@@ -43,11 +43,11 @@ pub fn wreath([x, y, z]: [f32; 3]) -> f32 {
 pub fn beard(style: BeardStyle, [x, y, z]: [f32; 3]) -> f32 {
     let x = x.abs();
     // Only in front of the ears and above the throat.
-    if z < 0.02 || y < 0.60 || y > 0.75 {
+    if z < 0.02 || !(0.60..0.75).contains(&y) {
         return -1.0;
     }
     let lips = {
-        let (a, b) = (x / 0.030, (y - LIPS_Y) / LIPS_HALF_M);
+        let (a, b) = (x / 0.029, (y - LIPS_Y) / LIPS_HALF_M);
         ((a * a + b * b).sqrt() - 1.0) * LIPS_HALF_M
     };
     let moustache = {
@@ -64,10 +64,15 @@ pub fn beard(style: BeardStyle, [x, y, z]: [f32; 3]) -> f32 {
         (0.0065 - (x - middle).abs()).min(LIPS_Y + 0.012 - y).min(y - 0.634).min(z - 0.07)
     };
     let jaw = {
-        // The cheek's line sinks from the sideburn to the corner of the mouth.
-        let cheek = LIPS_Y + 0.010 + 0.030 * step(0.030, 0.062, x) + 0.055 * step(0.060, 0.070, x);
-        let throat = 0.628 + 0.25 * (0.11 - z).max(0.0);
-        (cheek - y).min(y - throat).min(z - 0.028)
+        // The cheek's line rises from the corner of the mouth to the sideburn before the ear.
+        let cheek = LIPS_Y
+            + 0.004
+            + 0.016 * step(0.125, 0.092, z)
+            + 0.022 * step(0.094, 0.074, z)
+            + 0.036 * step(0.074, 0.064, z);
+        let throat = 0.622 + 0.25 * (0.11 - z).max(0.0);
+        let back = 0.034 + 0.020 * step(0.665, 0.690, y);
+        (cheek - y).min(y - throat).min(z - back)
     };
     let grown = match style {
         BeardStyle::None => -1.0,
@@ -79,8 +84,8 @@ pub fn beard(style: BeardStyle, [x, y, z]: [f32; 3]) -> f32 {
 }
 
 /// Height of the mouth's middle and half the height of the lips on the template.
-const LIPS_Y: f32 = 0.6765;
-const LIPS_HALF_M: f32 = 0.0105;
+const LIPS_Y: f32 = 0.6625;
+const LIPS_HALF_M: f32 = 0.0085;
 
 /// Share of the hair's colour in the skin under a beard.
 const fn shade(style: BeardStyle) -> f32 {
