@@ -179,9 +179,9 @@ pub fn dress(figure: &Figure, person: &Person, rest: &RestBody, lod: usize) -> D
     let lod = lod.min(LOD_COUNT - 1);
     let cuts = Cuts::new(&person.outfit);
     let mut out = Parts { builder: Builder::default(), parts: Vec::new() };
-    add_skin(&mut out, figure, rest, &cuts, lod);
+    let skin = add_skin(&mut out, figure, rest, &cuts, lod);
     add_face(&mut out, figure, person, rest, lod);
-    add_head(&mut out, figure, person, rest, lod);
+    add_head(&mut out, figure, person, (rest, &skin), lod);
     add_clothes(&mut out, figure, rest, &cuts, lod);
     let mut mesh = out.builder.mesh;
     bound(&mut mesh);
@@ -189,7 +189,14 @@ pub fn dress(figure: &Figure, person: &Person, rest: &RestBody, lod: usize) -> D
     Dressed { mesh: Arc::new(mesh), parts: out.parts }
 }
 
-fn add_skin(out: &mut Parts, figure: &Figure, rest: &RestBody, cuts: &Cuts, lod: usize) {
+/// The skin that shows; gives back all of it.
+fn add_skin<'a>(
+    out: &mut Parts,
+    figure: &'a Figure,
+    rest: &RestBody,
+    cuts: &Cuts,
+    lod: usize,
+) -> Evaluated<'a> {
     let mut skin = Evaluated::new(figure, rest, GroupId::Skin, lod);
     let count = skin.positions.len() as u32;
     let fields = garment::fields(figure, cuts, GroupId::Skin, count);
@@ -197,6 +204,7 @@ fn add_skin(out: &mut Parts, figure: &Figure, rest: &RestBody, cuts: &Cuts, lod:
     garment::tuck(figure, &fields, lod, &mut skin.positions, &skin.normals);
     let range = out.builder.add_where(&skin.surface(), |t| !t.iter().all(|&v| hidden[v]));
     out.add(PartKind::Skin, range, false);
+    skin
 }
 
 fn add_face(out: &mut Parts, figure: &Figure, person: &Person, rest: &RestBody, lod: usize) {
@@ -220,14 +228,20 @@ fn opens_mouth(look: &Look) -> bool {
 }
 
 /// What grows and sits on the head.
-fn add_head(out: &mut Parts, figure: &Figure, person: &Person, rest: &RestBody, lod: usize) {
+fn add_head(
+    out: &mut Parts,
+    figure: &Figure,
+    person: &Person,
+    (rest, skin): (&RestBody, &Evaluated<'_>),
+    lod: usize,
+) {
     let look = &person.look;
     let bare = look.hair == HairStyle::Bald && look.headwear.kind == HeadwearKind::None;
     let shaven = matches!(look.beard, BeardStyle::None | BeardStyle::Stubble);
     if bare && shaven && look.glasses == Glasses::None {
         return;
     }
-    let head = hair::Head::new(figure, person, rest, lod);
+    let head = hair::Head::new(figure, person, rest, lod, &skin.positions);
     let [base, locks, light] = hair::add(&mut out.builder.mesh, &head, look.hair);
     // Hair without locks has no light ones beside which it would have to be dark.
     let plain = locks.is_empty() && light.is_empty();
@@ -235,9 +249,8 @@ fn add_head(out: &mut Parts, figure: &Figure, person: &Person, rest: &RestBody, 
     out.add(PartKind::Locks, locks, true);
     out.add(PartKind::LightLocks, light, true);
     if !shaven {
-        let face = Evaluated::new(figure, rest, GroupId::Skin, lod);
         let [base, locks] =
-            beard::add(&mut out.builder, figure, &head, look.beard, &face.surface());
+            beard::add(&mut out.builder, figure, &head, look.beard, &skin.surface());
         out.add(PartKind::Hair, base, true);
         out.add(PartKind::Locks, locks, true);
     }
@@ -512,6 +525,11 @@ mod tests {
         range.map(|t| d.mesh.triangles[t as usize].map(|v| d.mesh.positions[v as usize])).collect()
     }
 
+    fn head_of(figure: &Figure, p: &Person, rest: &RestBody, lod: usize) -> hair::Head {
+        let skin = Evaluated::new(figure, rest, GroupId::Skin, lod);
+        hair::Head::new(figure, p, rest, lod, &skin.positions)
+    }
+
     const HAIR: [PartKind; 3] = [PartKind::Hair, PartKind::Locks, PartKind::LightLocks];
 
     #[test]
@@ -542,7 +560,7 @@ mod tests {
                 let mut p = groomed(style, 0, 0, 0);
                 p.body = person(i).body;
                 let rest = rest_body(&figure, &p.body, &p.look.face).unwrap();
-                let head = hair::Head::new(&figure, &p, &rest, lod);
+                let head = head_of(&figure, &p, &rest, lod);
                 let s = head.scalp.frame.scale;
                 let all = triangles_of(&dress(&figure, &p, &rest, lod), &HAIR);
                 let points: Vec<Vec3> =
@@ -602,7 +620,7 @@ mod tests {
         for beard in 2..BeardStyle::ALL.len() {
             let p = groomed(HairStyle::Bald, beard, 1 + beard % 4, 0);
             let rest = rest_body(&figure, &p.body, &p.look.face).unwrap();
-            let head = hair::Head::new(&figure, &p, &rest, 0);
+            let head = head_of(&figure, &p, &rest, 0);
             let d = dress(&figure, &p, &rest, 0);
             let local = |kinds: &[PartKind]| -> Vec<Vec3> {
                 let points = triangles_of(&d, kinds).into_iter().flatten();

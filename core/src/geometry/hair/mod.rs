@@ -54,13 +54,21 @@ pub(super) struct Head {
 }
 
 impl Head {
-    pub fn new(figure: &Figure, person: &Person, rest: &RestBody, lod: usize) -> Self {
+    /// `skin` are the positions of the skin's vertices at this level.
+    pub fn new(
+        figure: &Figure,
+        person: &Person,
+        rest: &RestBody,
+        lod: usize,
+        skin: &[Vec3],
+    ) -> Self {
         let scalp = Scalp::new(figure, rest);
         let clothes_m = 0.014 + (person.outfit.top.looseness_m as f32).clamp(0.0, 0.06);
         let hangs = style::form(person.look.hair)
             .is_some_and(|f| f.sheet_y.is_some() || f.tail != Tail::None);
+        let hangs = hangs || person.look.headwear.kind == HeadwearKind::Headscarf;
         let above_y = if hangs { 0.36 } else { 0.56 };
-        let near = Near::new(figure, rest, &scalp.frame, above_y, clothes_m);
+        let near = Near::new(figure, &scalp.frame, lod, skin, (above_y, clothes_m));
         let joint = |name: &str| {
             let names = figure.joint_names();
             names.iter().position(|n| n == name).unwrap_or(0) as u8
@@ -195,7 +203,8 @@ impl Grower<'_> {
     /// The outer surface of the cap.
     fn cap(&self, mesh: &mut Mesh) {
         let skip = [1, 1, 2, 2, 4][self.head.lod];
-        let rows: Vec<usize> = (0..=ROWS).filter(|r| (ROWS - r) % skip == 0 || *r == 0).collect();
+        let rows: Vec<usize> =
+            (0..=ROWS).filter(|r| (ROWS - r).is_multiple_of(skip) || *r == 0).collect();
         let mut points = Vec::with_capacity(rows.len() * COLUMNS);
         let mut uvs = Vec::with_capacity(points.capacity());
         for &row in &rows {
@@ -280,7 +289,7 @@ impl Grower<'_> {
             Length::Down(y, spread) => {
                 let y = y + spread * dice.range(-1.0, 1.0);
                 let clear = |way: f32| start + (end_m - start) * step(0.0, 0.08 * s, way);
-                comb.line(root, (start, 0.014 * s), |_, l| l.y < y, clear)
+                comb.line(root, (start, 0.018 * s), |_, l| l.y < y, clear)
             }
             Length::ToTie => {
                 let near = |l: Vec3| (l - tie).length() < 0.016;

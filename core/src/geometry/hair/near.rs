@@ -2,20 +2,20 @@
 //!
 //! An implicit surface through the vertices of a coarse level of the skin: the weighted mean of the
 //! distances to their tangent planes, near ones counting most (after Kolluri, "Provably good moving
-//! least squares", SODA 2005). The same level serves all levels of detail, so that hair hangs alike
-//! on all of them.
+//! least squares", SODA 2005). A coarse level of the skin serves the finer ones as well, so that hair
+//! hangs alike on them.
 
 use glam::Vec3;
 
 use super::scalp::Frame;
-use crate::geometry::body::RestBody;
 use crate::geometry::cut::smooth_normals;
 use crate::geometry::garment::step;
-use crate::geometry::phenotype;
-use crate::library::figure::{Figure, GroupId};
+use crate::library::figure::{Figure, GroupId, LOD_COUNT};
 
-/// The level of the skin that hair lies on.
-const LOD: usize = 2;
+/// The finest level of the skin that hair lies on: what is finer looks no better.
+const FINEST: usize = 2;
+/// Distance within which vertices count, by level of detail: two to three of its edges, metres.
+const CELL_M: [f32; LOD_COUNT] = [0.026, 0.026, 0.026, 0.035, 0.050];
 
 #[derive(Clone, Copy, Debug)]
 struct Sample {
@@ -34,29 +34,27 @@ pub(in crate::geometry) struct Near {
 }
 
 impl Near {
-    /// Skin above a height on the template; below the neck it is pushed out by what clothes take.
+    /// Skin above a height on the template, from the skin's vertices at a level of detail; below the
+    /// neck it is pushed out by what clothes take.
     pub fn new(
         figure: &Figure,
-        rest: &RestBody,
         frame: &Frame,
-        above_y: f32,
-        clothes_m: f32,
+        lod: usize,
+        skin: &[Vec3],
+        (above_y, clothes_m): (f32, f32),
     ) -> Self {
+        let lod = lod.max(FINEST);
         let group = figure.group(GroupId::Skin);
-        let level = &group.lods[LOD];
-        let range = figure.vertices(GroupId::Skin, level.vertices);
-        let at: Vec<Vec3> = phenotype::evaluate(figure, &rest.shape, range.clone())
-            .into_iter()
-            .map(Vec3::from_array)
-            .collect();
-        let normals = smooth_normals(&at, &group.render, &level.triangles);
+        let level = &group.lods[lod];
+        let at = &skin[..level.vertices as usize];
+        let normals = smooth_normals(at, &group.render, &level.triangles);
         let mut used = vec![false; at.len()];
         for r in &level.triangles {
             used[usize::from(group.render[usize::from(*r)])] = true;
         }
         let t = figure.template();
         let mut samples = Vec::new();
-        for (i, v) in range.enumerate() {
+        for (i, v) in figure.vertices(GroupId::Skin, level.vertices).enumerate() {
             let q = Vec3::new(t.x[v], t.y[v], t.z[v]);
             let n = normals[i];
             if used[i] && q.y > above_y && !is_inside(q) && !faces_the_head(q, n) {
@@ -64,7 +62,7 @@ impl Near {
                 samples.push(Sample { p: at[i] + n * cloth, n });
             }
         }
-        Self::sorted(samples, 0.026 * frame.scale)
+        Self::sorted(samples, CELL_M[lod] * frame.scale)
     }
 
     fn sorted(samples: Vec<Sample>, cell_m: f32) -> Self {
