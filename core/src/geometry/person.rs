@@ -588,7 +588,8 @@ mod tests {
                 for q in points.iter().step_by(7) {
                     let other = *q * Vec3::new(-1.0, 1.0, 1.0);
                     let gap = points.iter().map(|r| (*r - other).length()).fold(1.0, f32::min);
-                    assert!(gap < 0.0015, "{headwear} {glasses} {lod}: {q} {gap}");
+                    // Tubes of few sides are no mirror images of themselves.
+                    assert!(gap < 0.004, "{headwear} {glasses} {lod}: {q} {gap}");
                 }
             }
         }

@@ -59,8 +59,8 @@ pub(super) fn hair(traits: PersonTraits, draw: Draw) -> HairStyle {
             let long = 1.0 - 0.75 * old;
             let weights = [
                 (HairStyle::Cropped, 0.01 + 0.06 * african),
-                (HairStyle::Short, 0.05 + 0.22 * old),
-                (HairStyle::Pixie, 0.06 + 0.12 * old),
+                (HairStyle::Short, (0.05 + 0.22 * old) * (0.3 + 0.7 * others)),
+                (HairStyle::Pixie, (0.06 + 0.12 * old) * (0.3 + 0.7 * others)),
                 (HairStyle::Afro, 0.26 * african),
                 (HairStyle::Curly, 0.08 + 0.10 * african + 0.10 * old),
                 (HairStyle::Bob, (0.14 + 0.12 * old) * others),
@@ -158,7 +158,7 @@ mod tests {
         let curls = [H::Afro, H::Braids, H::Cropped];
         for sex in [Sex::Male, Sex::Female] {
             let [african, other] = [AFRICAN, [0.0, 0.5, 0.5]];
-            assert!(of(traits(sex, 30.0, african), &curls) > 0.45);
+            assert!(of(traits(sex, 30.0, african), &curls) > 0.40);
             assert_eq!(of(traits(sex, 30.0, other), &[H::Afro]), 0.0);
         }
     }

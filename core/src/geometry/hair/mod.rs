@@ -190,7 +190,7 @@ impl Grower<'_> {
         }
         if self.style == HairStyle::Balding {
             let here = style::wreath(root.local);
-            thick = thick * here - 0.004 * (1.0 - here);
+            thick = thick * here - 0.003 * (1.0 - here);
         }
         if let Some(edge) = self.head.brim_y(root.local) {
             // Pressed flat under a hat, and bulging less just below it.
@@ -215,7 +215,16 @@ impl Grower<'_> {
                 uvs.push([column as f32 * 4.0 / COLUMNS as f32, along]);
             }
         }
+        let first = mesh.positions.len();
+        let start = mesh.triangles.len();
         add_grid(mesh, &points, &uvs, COLUMNS / skip + 1, true, &|_| self.head.on_head());
+        if self.style == HairStyle::Balding {
+            // The bald crown lies under the skin.
+            let local = |v: u32| self.head.scalp.frame.local(points[v as usize - first]);
+            let tail = mesh.triangles.split_off(start);
+            let grows = |t: &[u32; 3]| t.iter().any(|&v| style::wreath(local(v)) > 0.0);
+            mesh.triangles.extend(tail.into_iter().filter(grows));
+        }
     }
 
     /// A root of the grid; near the hairline it is moved inwards, more here and less there.

@@ -197,7 +197,7 @@ mod tests {
         assert_eq!(seen, all);
         let rest = rest_body(&figure, &average(Sex::Female), &[]).unwrap();
         let scalp = Scalp::new(&figure, &rest);
-        assert!(scalp.root(ROWS, 0).local.z > 0.12 && scalp.root(ROWS, 32).local.z < -0.02);
+        assert!(scalp.root(ROWS, 0).local.z > 0.12 && scalp.root(ROWS, 32).local.z < 0.0);
         assert!(scalp.root(8, 16).local.x > 0.06 && scalp.root(8, 48).local.x < -0.06);
         for column in 0..COLUMNS {
             assert!(scalp.root(ROWS, column).depth < 1e-4);
