@@ -236,6 +236,14 @@ impl Hat<'_> {
         }
         let mut reach: Vec<f32> = directions.iter().map(|d| self.reach(center, *d)).collect();
         let wide = across + 1;
+        // Where the skin has holes, at the eyes, a ray may stop too early.
+        let traced = reach.clone();
+        for (i, r) in reach.iter_mut().enumerate() {
+            let (row, column) = (i - i % wide, i % wide);
+            let left = traced[row + if column == 0 { across - 1 } else { column - 1 }];
+            let right = traced[row + if column == across { 1 } else { column + 1 }];
+            *r = r.min(left.max(right) * 1.04);
+        }
         for _ in 0..[3, 2, 1, 0, 0][self.head.lod] {
             let before = reach.clone();
             for row in 1..rows {
