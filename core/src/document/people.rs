@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use super::face::Expression;
 use super::place::PoissonDisk;
 use super::{Auto, Choice, Color, ColorLaw, Flag, Param, Placement, Rotation};
-use crate::scene::{BottomKind, HairStyle, HandShape, Sex};
+use crate::scene::{BeardStyle, BottomKind, Glasses, HairStyle, HandShape, HeadwearKind, Sex};
 
 /// Everybody in the picture.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -137,8 +137,20 @@ pub struct Look {
     pub skin: Auto<Color>,
     /// Hair on the head.
     pub hair: Auto<Choice<HairStyle>>,
-    /// Hair and brows.
+    /// Hair, brows and beard.
     pub hair_color: Auto<Color>,
+    /// Whether hair whose colour is `"auto"` is dyed pink, blue, green and the like, from the age of
+    /// 14 on.
+    pub dyed: Flag,
+    /// Hair on the face; `"auto"` gives beards to men by age.
+    pub beard: Auto<Choice<BeardStyle>>,
+    /// On the head. It presses the hair below it flat; a headscarf hides all of it. `"auto"` leaves
+    /// nine heads in ten bare.
+    pub headwear: Auto<Choice<HeadwearKind>>,
+    /// Colour of what is on the head.
+    pub headwear_color: Auto<Color>,
+    /// In front of the eyes; `"auto"` gives glasses to few young people and to many old ones.
+    pub glasses: Auto<Choice<Glasses>>,
     /// Iris.
     pub iris_color: Auto<Color>,
     /// How many local shapes are added to a face.
@@ -158,6 +170,11 @@ impl Default for Look {
             skin: Auto::default(),
             hair: Auto::default(),
             hair_color: Auto::default(),
+            dyed: Flag::with_probability(0.02),
+            beard: Auto::default(),
+            headwear: Auto::default(),
+            headwear_color: Auto::default(),
+            glasses: Auto::default(),
             iris_color: Auto::default(),
             face_targets: Param::uniform(10.0, 25.0),
             face_std: 0.35,

@@ -302,6 +302,7 @@ fn look(c: &mut Check, look: &Look) {
     let colors = [
         ("people.look.skin", &look.skin),
         ("people.look.hair_color", &look.hair_color),
+        ("people.look.headwear_color", &look.headwear_color),
         ("people.look.iris_color", &look.iris_color),
     ];
     for (path, color) in colors {
@@ -311,6 +312,16 @@ fn look(c: &mut Check, look: &Look) {
     }
     if let Auto::Given(hair) = &look.hair {
         c.choice("people.look.hair", hair);
+    }
+    c.flag("people.look.dyed", &look.dyed);
+    if let Auto::Given(beard) = &look.beard {
+        c.choice("people.look.beard", beard);
+    }
+    if let Auto::Given(headwear) = &look.headwear {
+        c.choice("people.look.headwear", headwear);
+    }
+    if let Auto::Given(glasses) = &look.glasses {
+        c.choice("people.look.glasses", glasses);
     }
     c.param("people.look.face_targets", &look.face_targets, Range::from_to(0.0, 100.0));
     c.number("people.look.face_std", look.face_std, SHARE);

@@ -60,9 +60,11 @@ impl Surfaces {
         let detail_map = self.optional(detail, library, list)?;
         let mask = match surface.mask {
             Mask::None => None,
-            Mask::Skin => Some(
-                self.shared("figure/skin_mask", list, || Arc::clone(library.figure.skin_mask())),
-            ),
+            Mask::Skin(scalp, beard) => {
+                let id = format!("figure/skin_mask/{}/{}", scalp as u8, beard as u8);
+                let mask = || Arc::clone(library.figure.painted_skin_mask(scalp, beard));
+                Some(self.shared(&id, list, mask))
+            }
             Mask::Eye => {
                 Some(self.shared("figure/eye_mask", list, || Arc::clone(library.figure.eye_mask())))
             }

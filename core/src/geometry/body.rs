@@ -22,8 +22,8 @@ const COVER_M: f64 = 0.05;
 /// Of the keypoints, COCO's order.
 const LEFT_ELBOW: usize = 7;
 const LEFT_WRIST: usize = 9;
-/// Hair, likewise.
-const HAIR_M: f64 = 0.09;
+/// Hair and hats, likewise.
+const HAIR_M: f64 = 0.15;
 
 /// A point that moves with the body.
 #[derive(Clone, Copy, Debug, PartialEq)]

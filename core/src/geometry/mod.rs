@@ -10,18 +10,22 @@
 //! | `solve` | sliders of the body model from stature and body mass index |
 //! | [`person`] | a dressed person at rest: skin, eyes, hair and clothes as one mesh |
 //! | [`surface`] | what the parts of a person look like |
-//! | `garment`, `hair`, `cut` | clothes and hair, cut from shells along scalar fields |
+//! | `garment`, `cut` | clothes, cut from a shell along scalar fields |
+//! | `hair`, `beard`, `headwear`, `glasses` | what grows and sits on the head |
 //! | [`skeleton`], [`pose`] | joints, and clips and poses retargeted to a body |
 //! | [`stance`], `hand` | what joints and fingers are to do |
 //! | [`trunk`], `settle` | keep arms out of trunks, lay bodies on the ground |
 //! | [`points`] | poses single vertices in double precision |
 //! | [`shape`] | primitive shapes |
 
+mod beard;
 pub mod body;
 mod cut;
 mod garment;
+mod glasses;
 mod hair;
 mod hand;
+mod headwear;
 pub mod person;
 pub mod phenotype;
 pub mod points;

@@ -13,11 +13,11 @@ use glam::Vec3;
 use super::body::{RestBody, SOLE_M};
 use super::cut::{Builder, Refined, Rim, Surface as Cloth, smooth_normals};
 use super::garment::{self, Cuts, Fields};
-use super::{hair, phenotype};
+use super::{beard, glasses, hair, headwear, phenotype};
 use crate::base::hash::Hasher;
 use crate::library::figure::{Figure, GroupId, LOD_COUNT};
 use crate::library::mesh::{Mesh, SkinVertex};
-use crate::scene::{Body, HairStyle, Look, Person};
+use crate::scene::{BeardStyle, Body, Glasses, HairStyle, HeadwearKind, Look, Person};
 
 /// What a part of a person is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -28,8 +28,18 @@ pub enum PartKind {
     Eyes,
     /// Teeth.
     Teeth,
-    /// Hair on the head.
+    /// What lies under the locks of the hair, and hair without locks.
     Hair,
+    /// Locks.
+    Locks,
+    /// Locks that are a little lighter.
+    LightLocks,
+    /// On the head.
+    Headwear,
+    /// Frame of the glasses.
+    Frame,
+    /// Dark lenses.
+    Lenses,
     /// Garment of the upper body.
     Top,
     /// Garment of the legs.
@@ -149,6 +159,7 @@ impl MeshKey {
         let (top, bottom) = (&outfit.top, &outfit.bottom);
         let mut hasher = Hasher::new();
         hasher.bytes(&[sex as u8, look.hair as u8, bottom.kind as u8]);
+        hasher.bytes(&[look.beard as u8, look.headwear.kind as u8, look.glasses as u8]);
         let sizes =
             [age_years, stature_m, bmi_kg_m2, muscle, proportions, african, asian, european];
         let cuts = [cup, firmness, top.sleeve, top.neckline, top.looseness_m];
@@ -169,9 +180,9 @@ pub fn dress(figure: &Figure, person: &Person, rest: &RestBody, lod: usize) -> D
     let lod = lod.min(LOD_COUNT - 1);
     let cuts = Cuts::new(&person.outfit);
     let mut out = Parts { builder: Builder::default(), parts: Vec::new() };
-    add_skin(&mut out, figure, rest, &cuts, lod);
+    let skin = add_skin(&mut out, figure, rest, &cuts, lod);
     add_face(&mut out, figure, person, rest, lod);
-    add_hair(&mut out, figure, &person.look, rest, lod);
+    add_head(&mut out, figure, person, (rest, &skin), lod);
     add_clothes(&mut out, figure, rest, &cuts, lod);
     let mut mesh = out.builder.mesh;
     bound(&mut mesh);
@@ -179,7 +190,14 @@ pub fn dress(figure: &Figure, person: &Person, rest: &RestBody, lod: usize) -> D
     Dressed { mesh: Arc::new(mesh), parts: out.parts }
 }
 
-fn add_skin(out: &mut Parts, figure: &Figure, rest: &RestBody, cuts: &Cuts, lod: usize) {
+/// The skin that shows; gives back all of it.
+fn add_skin<'a>(
+    out: &mut Parts,
+    figure: &'a Figure,
+    rest: &RestBody,
+    cuts: &Cuts,
+    lod: usize,
+) -> Evaluated<'a> {
     let mut skin = Evaluated::new(figure, rest, GroupId::Skin, lod);
     let count = skin.positions.len() as u32;
     let fields = garment::fields(figure, cuts, GroupId::Skin, count);
@@ -187,6 +205,7 @@ fn add_skin(out: &mut Parts, figure: &Figure, rest: &RestBody, cuts: &Cuts, lod:
     garment::tuck(figure, &fields, lod, &mut skin.positions, &skin.normals);
     let range = out.builder.add_where(&skin.surface(), |t| !t.iter().all(|&v| hidden[v]));
     out.add(PartKind::Skin, range, false);
+    skin
 }
 
 fn add_face(out: &mut Parts, figure: &Figure, person: &Person, rest: &RestBody, lod: usize) {
@@ -209,23 +228,42 @@ fn opens_mouth(look: &Look) -> bool {
     })
 }
 
-fn add_hair(out: &mut Parts, figure: &Figure, look: &Look, rest: &RestBody, lod: usize) {
-    if look.hair == HairStyle::Bald {
+/// What grows and sits on the head.
+fn add_head(
+    out: &mut Parts,
+    figure: &Figure,
+    person: &Person,
+    (rest, skin): (&RestBody, &Evaluated<'_>),
+    lod: usize,
+) {
+    let look = &person.look;
+    let bare = look.hair == HairStyle::Bald && look.headwear.kind == HeadwearKind::None;
+    let shaven = matches!(look.beard, BeardStyle::None | BeardStyle::Stubble);
+    if bare && shaven && look.glasses == Glasses::None {
         return;
     }
-    let roots = Evaluated::new(figure, rest, GroupId::HairCap, lod);
-    let scale = rest.head_scale as f32 * rest.shape.scale;
-    let Some((positions, normals)) = hair::cap(figure, look.hair, lod, scale, &roots.positions)
-    else {
-        return;
-    };
-    let cap = out.builder.add_where(&roots.with(&positions, &normals), |_| true);
-    let mut end = cap.end;
-    if hair::has_curtain(look.hair) {
-        let curtain = Evaluated::new(figure, rest, GroupId::HairCurtain, lod);
-        end = out.builder.add_where(&curtain.surface(), |_| true).end;
+    let head = hair::Head::new(figure, person, rest, lod, &skin.positions);
+    let [base, locks, light] = hair::add(&mut out.builder.mesh, &head, look.hair);
+    // Hair without locks has no light ones beside which it would have to be dark.
+    let plain = locks.is_empty() && light.is_empty();
+    out.add(if plain { PartKind::Locks } else { PartKind::Hair }, base, true);
+    out.add(PartKind::Locks, locks, true);
+    out.add(PartKind::LightLocks, light, true);
+    if !shaven {
+        let [base, locks] =
+            beard::add(&mut out.builder, figure, &head, look.beard, &skin.surface());
+        out.add(PartKind::Hair, base, true);
+        out.add(PartKind::Locks, locks, true);
     }
-    out.add(PartKind::Hair, cap.start..end, true);
+    let range = headwear::add(&mut out.builder.mesh, &head);
+    out.add(PartKind::Headwear, range, true);
+    if look.glasses != Glasses::None {
+        let eyes = Evaluated::new(figure, rest, GroupId::Eyes, 0);
+        let [frame, lenses] =
+            glasses::add(&mut out.builder.mesh, &head, look.glasses, &eyes.positions);
+        out.add(PartKind::Frame, frame, true);
+        out.add(PartKind::Lenses, lenses, true);
+    }
 }
 
 fn add_clothes(out: &mut Parts, figure: &Figure, rest: &RestBody, cuts: &Cuts, lod: usize) {
@@ -283,19 +321,12 @@ mod tests {
     use super::*;
     use crate::geometry::body::rest_body;
     use crate::geometry::phenotype::tests::average;
-    use crate::scene::{Bottom, BottomKind, Outfit, Placement, Pose, Sex, Shoes, Top};
+    use crate::scene::{Bottom, BottomKind, Headwear, Outfit, Placement, Pose, Sex, Shoes, Top};
     use glam::{DQuat, DVec3};
 
     fn person(i: usize) -> Person {
         let x = (i % 4) as f64 / 3.0;
         let sex = if i.is_multiple_of(2) { Sex::Male } else { Sex::Female };
-        let hair = [
-            HairStyle::Bald,
-            HairStyle::Cropped,
-            HairStyle::Short,
-            HairStyle::Afro,
-            HairStyle::Long,
-        ];
         let kind = if i.is_multiple_of(3) { BottomKind::Shorts } else { BottomKind::Trousers };
         let face = vec![("jawOpen".to_owned(), x), ("nose-hump-incr".to_owned(), 0.4)];
         Person {
@@ -317,8 +348,14 @@ mod tests {
             },
             look: Look {
                 skin_color: [0.5, 0.3, 0.2],
-                hair: hair[i % 5],
+                hair: HairStyle::ALL[i % HairStyle::ALL.len()],
                 hair_color: [0.05; 3],
+                beard: BeardStyle::ALL[i % BeardStyle::ALL.len()],
+                headwear: Headwear {
+                    kind: HeadwearKind::ALL[i / 3 % HeadwearKind::ALL.len()],
+                    color: [0.3; 3],
+                },
+                glasses: Glasses::ALL[i / 2 % Glasses::ALL.len()],
                 iris_color: [0.1, 0.05, 0.02],
                 face,
             },
@@ -354,7 +391,7 @@ mod tests {
     #[test]
     fn every_mesh_is_sound() {
         let figure = Figure::built_in().unwrap();
-        for i in 0..10 {
+        for i in 0..15 {
             for lod in 0..LOD_COUNT {
                 let Dressed { mesh, parts } = dressed(&figure, i, lod);
                 let n = mesh.positions.len();
@@ -470,6 +507,138 @@ mod tests {
         }
     }
 
+    /// Average people with every style: hair, beard, headwear and glasses by number.
+    fn groomed(hair: HairStyle, beard: usize, headwear: usize, glasses: usize) -> Person {
+        let sex = if beard > 0 { Sex::Male } else { Sex::Female };
+        let mut p = person(1);
+        p.body = average(sex);
+        p.look.face = Vec::new();
+        p.look.hair = hair;
+        p.look.beard = BeardStyle::ALL[beard];
+        p.look.headwear.kind = HeadwearKind::ALL[headwear];
+        p.look.glasses = Glasses::ALL[glasses];
+        p
+    }
+
+    fn triangles_of(d: &Dressed, kinds: &[PartKind]) -> Vec<[[f32; 3]; 3]> {
+        let parts = d.parts.iter().filter(|p| kinds.contains(&p.kind));
+        let range = parts.flat_map(|p| p.triangles.clone());
+        range.map(|t| d.mesh.triangles[t as usize].map(|v| d.mesh.positions[v as usize])).collect()
+    }
+
+    fn head_of(figure: &Figure, p: &Person, rest: &RestBody, lod: usize) -> hair::Head {
+        let skin = Evaluated::new(figure, rest, GroupId::Skin, lod);
+        hair::Head::new(figure, p, rest, lod, &skin.positions)
+    }
+
+    const HAIR: [PartKind; 3] = [PartKind::Hair, PartKind::Locks, PartKind::LightLocks];
+
+    #[test]
+    fn every_style_is_its_own_and_gets_simpler_with_distance() {
+        let figure = Figure::built_in().unwrap();
+        let mut seen: Vec<Vec<[[f32; 3]; 3]>> = Vec::new();
+        for style in HairStyle::ALL {
+            let p = groomed(style, 0, 0, 0);
+            let rest = rest_body(&figure, &p.body, &p.look.face).unwrap();
+            let levels: Vec<_> = (0..LOD_COUNT)
+                .map(|lod| triangles_of(&dress(&figure, &p, &rest, lod), &HAIR))
+                .collect();
+            let count: Vec<usize> = levels.iter().map(Vec::len).collect();
+            println!("{style:?}: {count:?} triangles");
+            assert!(count.iter().all(|n| (*n == 0) == (style == HairStyle::Bald)));
+            assert!(style == HairStyle::Bald || count.windows(2).all(|n| n[1] < n[0]), "{style:?}");
+            assert!(!seen.contains(&levels[0]), "{style:?}");
+            seen.extend(levels.into_iter().take(1));
+        }
+    }
+
+    /// Most hair lies outside the skin at rest; what is under it are the roots.
+    #[test]
+    fn hair_does_not_pierce_head_or_shoulders() {
+        let figure = Figure::built_in().unwrap();
+        for (i, style) in HairStyle::ALL.into_iter().enumerate().skip(1) {
+            for lod in 0..LOD_COUNT {
+                let mut p = groomed(style, 0, 0, 0);
+                p.body = person(i).body;
+                let rest = rest_body(&figure, &p.body, &p.look.face).unwrap();
+                let head = head_of(&figure, &p, &rest, lod);
+                let s = head.scalp.frame.scale;
+                let all = triangles_of(&dress(&figure, &p, &rest, lod), &HAIR);
+                let points: Vec<Vec3> =
+                    all.iter().flatten().map(|q| Vec3::from_array(*q)).collect();
+                let deep = |q: &&Vec3| head.near.surface(**q).is_some_and(|f| f.0 < -0.006 * s);
+                let share = points.iter().filter(deep).count() as f32 / points.len() as f32;
+                println!("{style:?} {lod}: {:.2} % of {}", 100.0 * share, points.len());
+                assert!(share < 0.02, "{style:?} level {lod}: {share}");
+            }
+        }
+    }
+
+    #[test]
+    fn glasses_and_hats_are_the_same_on_both_sides() {
+        let figure = Figure::built_in().unwrap();
+        for (headwear, glasses) in [(1, 1), (3, 2), (0, 3)] {
+            let p = groomed(HairStyle::Bald, 0, headwear, glasses);
+            let rest = rest_body(&figure, &p.body, &p.look.face).unwrap();
+            for lod in 0..LOD_COUNT {
+                let kinds = [PartKind::Headwear, PartKind::Frame, PartKind::Lenses];
+                let all = triangles_of(&dress(&figure, &p, &rest, lod), &kinds);
+                assert!(all.len() > 40, "{headwear} {glasses} {lod}");
+                let points: Vec<Vec3> =
+                    all.iter().flatten().map(|q| Vec3::from_array(*q)).collect();
+                for q in points.iter().step_by(7) {
+                    let other = *q * Vec3::new(-1.0, 1.0, 1.0);
+                    let gap = points.iter().map(|r| (*r - other).length()).fold(1.0, f32::min);
+                    // Tubes of few sides are no mirror images of themselves.
+                    assert!(gap < 0.004, "{headwear} {glasses} {lod}: {q} {gap}");
+                }
+            }
+        }
+    }
+
+    /// Bounds of what a person covers hold whatever grows and sits on the head.
+    #[test]
+    fn reach_bounds_hair_and_hats() {
+        let figure = Figure::built_in().unwrap();
+        for (i, style) in HairStyle::ALL.into_iter().enumerate() {
+            let mut p = person(i);
+            p.look.hair = style;
+            let rest = rest_body(&figure, &p.body, &p.look.face).unwrap();
+            let mesh = dress(&figure, &p, &rest, 0).mesh;
+            for (q, s) in mesh.positions.iter().zip(&mesh.skin) {
+                for (&j, _) in s.joints.iter().zip(&s.weights).filter(|w| *w.1 > 0) {
+                    let j = usize::from(j);
+                    let head = rest.heads_m[j].as_vec3();
+                    let far = f64::from((Vec3::from_array(*q) - head).length());
+                    assert!(far <= rest.reach_m[j], "{style:?} {i} joint {j}: {far}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn beards_sit_on_the_face_and_hats_hide_no_eyes() {
+        let figure = Figure::built_in().unwrap();
+        for beard in 2..BeardStyle::ALL.len() {
+            let p = groomed(HairStyle::Bald, beard, 1 + beard % 4, 0);
+            let rest = rest_body(&figure, &p.body, &p.look.face).unwrap();
+            let head = head_of(&figure, &p, &rest, 0);
+            let d = dress(&figure, &p, &rest, 0);
+            let local = |kinds: &[PartKind]| -> Vec<Vec3> {
+                let points = triangles_of(&d, kinds).into_iter().flatten();
+                points.map(|q| head.scalp.frame.local(Vec3::from_array(q))).collect()
+            };
+            let hairs = local(&HAIR);
+            assert!(hairs.len() > 300, "{beard}");
+            for q in &hairs {
+                assert!((0.56..0.76).contains(&q.y) && q.z > 0.0, "{beard} {q}");
+            }
+            let before_the_eyes =
+                |q: &&Vec3| q.x.abs() < 0.05 && q.z > 0.06 && (0.70..0.745).contains(&q.y);
+            assert_eq!(local(&[PartKind::Headwear]).iter().filter(before_the_eyes).count(), 0);
+        }
+    }
+
     #[test]
     fn whoever_shares_a_key_shares_the_mesh() {
         let p = person(4);
@@ -479,11 +648,14 @@ mod tests {
         elsewhere.placement.position_m = DVec3::X;
         elsewhere.outfit.top.color = [0.9; 3];
         assert_eq!(MeshKey::new(&elsewhere), key);
-        let changes: [fn(&mut Person); 6] = [
+        let changes: [fn(&mut Person); 9] = [
             |p| p.body.cup += 1e-9,
             |p| p.body.sex = Sex::Female,
             |p| p.look.face[1].1 += 0.01,
             |p| p.look.hair = HairStyle::Short,
+            |p| p.look.beard = BeardStyle::Goatee,
+            |p| p.look.headwear.kind = HeadwearKind::Beanie,
+            |p| p.look.glasses = Glasses::Sunglasses,
             |p| p.outfit.bottom.kind = BottomKind::Shorts,
             |p| p.outfit.top.sleeve += 0.01,
         ];

@@ -4,15 +4,16 @@
 //! made in [`super::person`]; textures' pixels are not known here.
 
 use super::person::PartKind;
-use crate::scene::{HairStyle, Look, Person};
+use crate::library::figure::ScalpShade;
+use crate::scene::{BeardStyle, Glasses, HairStyle, HeadwearKind, Look, Person};
 
 /// Which mask texture colours a surface's layers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Mask {
     /// None: the layers are unused.
     None,
-    /// The figure's skin mask.
-    Skin,
+    /// The figure's skin mask with this scalp and beard.
+    Skin(ScalpShade, BeardStyle),
     /// The figure's eye mask.
     Eye,
 }
@@ -62,7 +63,16 @@ pub fn surface(kind: PartKind, person: &Person) -> Surface {
         PartKind::Skin => skin_surface(look),
         PartKind::Eyes => eye_surface(look),
         PartKind::Teeth => plain([0.78, 0.74, 0.64], 0.25),
-        PartKind::Hair => hair_surface(look),
+        // Between the locks it is darker than on them.
+        PartKind::Hair => hair_surface(look, 0.72),
+        PartKind::Locks => hair_surface(look, 1.0),
+        PartKind::LightLocks => hair_surface(look, 1.28),
+        PartKind::Headwear => headwear_surface(look),
+        PartKind::Frame => match look.glasses {
+            Glasses::Thin => plain([0.16, 0.15, 0.14], 0.25),
+            _ => plain([0.012, 0.011, 0.011], 0.25),
+        },
+        PartKind::Lenses => plain([0.006, 0.006, 0.007], 0.06),
         PartKind::Top => cloth(top.color, top.texture.as_ref(), top.hue_offset_deg),
         PartKind::Bottom => cloth(bottom.color, bottom.texture.as_ref(), bottom.hue_offset_deg),
         PartKind::Shoes => plain(narrow(shoe), 0.45),
@@ -99,15 +109,15 @@ fn plain(base_color: [f32; 3], roughness: f32) -> Surface {
 fn skin_surface(look: &Look) -> Surface {
     let skin = narrow(look.skin_color);
     let hair = narrow(look.hair_color);
-    // Shaven heads show a shade of stubble; under hair the scalp takes its colour.
-    let scalp = match look.hair {
-        HairStyle::Bald => mix(skin, tinted(skin, [0.86, 0.84, 0.85]), 0.5),
-        HairStyle::Cropped => mix(skin, hair, 0.85),
-        HairStyle::Short | HairStyle::Afro | HairStyle::Long => mix(skin, hair, 0.95),
+    let shade = match look.hair {
+        HairStyle::Bald => ScalpShade::Shaven,
+        HairStyle::Balding => ScalpShade::Wreath,
+        _ => ScalpShade::Full,
     };
+    let scalp = mix(skin, hair, if look.hair == HairStyle::Cropped { 0.85 } else { 0.95 });
     Surface {
         wrap: 0.25,
-        mask: Mask::Skin,
+        mask: Mask::Skin(shade, look.beard),
         layers: [
             layer(tinted(skin, [0.78, 0.44, 0.43]), 0.40),
             layer(mix(hair, tinted(skin, [0.5, 0.45, 0.42]), 0.25), 0.65),
@@ -138,18 +148,31 @@ fn eye_surface(look: &Look) -> Surface {
     }
 }
 
-fn hair_surface(look: &Look) -> Surface {
+fn hair_surface(look: &Look, tone: f32) -> Surface {
     // Tight curls scatter what long strands reflect.
     let roughness = match look.hair {
-        HairStyle::Afro | HairStyle::Cropped | HairStyle::Bald => 0.92,
-        HairStyle::Short => 0.78,
-        HairStyle::Long => 0.66,
+        HairStyle::Afro | HairStyle::Cropped | HairStyle::Bald | HairStyle::Balding => 0.90,
+        HairStyle::Curly | HairStyle::CrewCut => 0.75,
+        HairStyle::Short | HairStyle::SideParting | HairStyle::Pixie => 0.62,
+        _ => 0.52,
     };
     Surface {
         detail: Detail::Hair,
         detail_strength: 0.6,
         wrap: 0.10,
-        ..plain(narrow(look.hair_color), roughness)
+        ..plain(tinted(narrow(look.hair_color), [tone; 3]), roughness)
+    }
+}
+
+fn headwear_surface(look: &Look) -> Surface {
+    let roughness = match look.headwear.kind {
+        HeadwearKind::Beanie => 0.95,
+        _ => 0.82,
+    };
+    Surface {
+        detail: Detail::Cloth,
+        detail_strength: if look.headwear.kind == HeadwearKind::Beanie { 0.35 } else { 0.12 },
+        ..plain(narrow(look.headwear.color), roughness)
     }
 }
 

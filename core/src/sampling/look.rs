@@ -3,14 +3,14 @@
 use std::collections::BTreeSet;
 
 use super::expression::face_units;
-use super::growth::interpolate;
 use super::keys;
 use super::people::{PersonTraits, Source};
 use super::quantile;
-use super::value::{color, item, linear, number};
+use super::style;
+use super::value::{color, flag, item, linear, number};
 use crate::base::rng::{Draw, Stream};
-use crate::document::{self, Auto};
-use crate::scene::{HairStyle, Look, Sex};
+use crate::document::{self, Auto, Choice};
+use crate::scene::{Headwear, Look};
 
 /// Skin from light to dark, sRGB. Ancestry sets the place on this row.
 const SKIN_SRGB: [[f64; 3]; 6] = [
@@ -38,6 +38,32 @@ const HAIR_OTHERS: [([f64; 3], f64); 2] = [([0.05, 0.04, 0.04], 0.7), ([0.12, 0.
 const HAIR_GREY: [f64; 3] = [0.62, 0.61, 0.59];
 /// Age at which hair begins to turn grey, and how long it takes.
 const GREYING_YEARS: (f64, f64, f64) = (46.0, 8.0, 22.0);
+
+/// From this age on hair is dyed.
+const DYED_FROM_YEARS: f64 = 14.0;
+/// Dyes: pink, magenta, red, orange, green, turquoise, blue, violet; sRGB.
+const DYES_SRGB: [[f64; 3]; 8] = [
+    [0.90, 0.45, 0.62],
+    [0.72, 0.14, 0.48],
+    [0.74, 0.08, 0.10],
+    [0.88, 0.40, 0.10],
+    [0.24, 0.56, 0.22],
+    [0.16, 0.60, 0.62],
+    [0.14, 0.30, 0.72],
+    [0.45, 0.24, 0.66],
+];
+
+/// Hats, caps and scarves: dark, grey, navy, beige, brown, red, green, white; sRGB with weights.
+const HEADWEAR_SRGB: [([f64; 3], f64); 8] = [
+    ([0.07, 0.07, 0.08], 0.24),
+    ([0.38, 0.38, 0.39], 0.12),
+    ([0.11, 0.15, 0.28], 0.16),
+    ([0.70, 0.62, 0.50], 0.12),
+    ([0.34, 0.24, 0.17], 0.10),
+    ([0.55, 0.12, 0.13], 0.09),
+    ([0.22, 0.32, 0.22], 0.07),
+    ([0.84, 0.83, 0.80], 0.10),
+];
 
 /// Irises of mostly European people: brown, hazel, green, blue, grey; sRGB with weights.
 const IRIS_EUROPEAN: [([f64; 3], f64); 5] = [
@@ -97,17 +123,29 @@ pub(super) fn look(
         Auto::Given(law) => color(law, of(key)),
     };
     let greying = of(keys::GREYING);
+    let dyed = traits.age_years >= DYED_FROM_YEARS && flag(&look.dyed, of(keys::DYED));
     Look {
         skin_color: given(&look.skin, keys::SKIN, &|draw| skin(traits, draw)),
-        hair: match &look.hair {
-            Auto::Auto(_) => hair_style(traits, of(keys::HAIR)),
-            Auto::Given(choice) => *item(choice, of(keys::HAIR)),
-        },
+        hair: chosen(&look.hair, of(keys::HAIR), &|draw| style::hair(traits, draw)),
         hair_color: given(&look.hair_color, keys::HAIR_COLOR, &|draw| {
-            hair_color(traits, draw, greying)
+            if dyed { dye(of(keys::DYE)) } else { hair_color(traits, draw, greying) }
         }),
+        beard: chosen(&look.beard, of(keys::BEARD), &|draw| style::beard(traits, draw)),
+        headwear: Headwear {
+            kind: chosen(&look.headwear, of(keys::HEADWEAR), &|draw| style::headwear(traits, draw)),
+            color: given(&look.headwear_color, keys::HEADWEAR_COLOR, &|draw| felt(draw)),
+        },
+        glasses: chosen(&look.glasses, of(keys::GLASSES), &|draw| style::glasses(traits, draw)),
         iris_color: given(&look.iris_color, keys::IRIS, &|draw| iris(traits, draw)),
         face: if look.enabled { face(look, faces, source) } else { Vec::new() },
+    }
+}
+
+/// What is given, or what follows from the person.
+fn chosen<T: Copy>(given: &Auto<Choice<T>>, draw: Draw, otherwise: &dyn Fn(Draw) -> T) -> T {
+    match given {
+        Auto::Auto(_) => otherwise(draw),
+        Auto::Given(choice) => *item(choice, draw),
     }
 }
 
@@ -151,22 +189,14 @@ fn iris(traits: PersonTraits, draw: Draw) -> [f64; 3] {
     linear(pick(colors, draw))
 }
 
-fn hair_style(traits: PersonTraits, draw: Draw) -> HairStyle {
-    let PersonTraits { sex, age_years, ancestry } = traits;
-    let curly = if ancestry[0] > 0.5 { 0.35 } else { 0.0 };
-    // Bald, cropped, short, afro, long.
-    let weights = match sex {
-        _ if age_years < 3.0 => [0.0, 0.5, 0.5, 0.0, 0.0],
-        Sex::Male => {
-            let bald = interpolate(&[(20.0, 0.02), (40.0, 0.12), (70.0, 0.35)], age_years);
-            let bald = if age_years < 18.0 { 0.0 } else { bald };
-            [bald, 0.25, 0.6 - 0.5 * curly, curly, 0.04]
-        }
-        Sex::Female => [0.0, 0.05, 0.3, curly, 0.7 - 0.5 * curly],
-    };
-    let styles =
-        [HairStyle::Bald, HairStyle::Cropped, HairStyle::Short, HairStyle::Afro, HairStyle::Long];
-    styles[quantile::index(draw.uniform(), weights.into_iter())]
+/// A strong colour that no hair has by itself.
+fn dye(draw: Draw) -> [f64; 3] {
+    linear(DYES_SRGB[quantile::index(draw.uniform(), DYES_SRGB.iter().map(|_| 1.0))])
+}
+
+/// Colour of a hat.
+fn felt(draw: Draw) -> [f64; 3] {
+    linear(pick(&HEADWEAR_SRGB, draw))
 }
 
 /// Some shapes, each with the absolute value of a normal.
@@ -193,6 +223,7 @@ fn face(look: &document::Look, shapes: &[FaceShape], source: Source) -> Vec<(Str
 mod tests {
     use super::*;
     use crate::base::rng::{Draws, Key};
+    use crate::scene::Sex;
 
     fn traits(sex: Sex, age_years: f64, ancestry: [f64; 3]) -> PersonTraits {
         PersonTraits { sex, age_years, ancestry }
@@ -230,15 +261,14 @@ mod tests {
     }
 
     #[test]
-    fn hair_styles_follow_sex_and_age() {
-        let share =
-            |t: PersonTraits, style| mean(draws().map(|d| f64::from(hair_style(t, d) == style)));
-        let anyone = [0.3, 0.3, 0.4];
-        assert!(share(traits(Sex::Female, 30.0, anyone), HairStyle::Long) > 0.5);
-        assert!(share(traits(Sex::Male, 30.0, anyone), HairStyle::Long) < 0.1);
-        assert_eq!(share(traits(Sex::Male, 12.0, anyone), HairStyle::Bald), 0.0);
-        assert!(share(traits(Sex::Male, 70.0, anyone), HairStyle::Bald) > 0.2);
-        assert!(share(traits(Sex::Male, 30.0, [0.9, 0.1, 0.0]), HairStyle::Afro) > 0.2);
+    fn dyed_hair_is_brighter_than_natural_hair() {
+        let strength = |c: [f64; 3]| {
+            c.into_iter().fold(f64::MIN, f64::max) - c.into_iter().fold(f64::MAX, f64::min)
+        };
+        let anyone = traits(Sex::Female, 30.0, [0.3, 0.3, 0.4]);
+        let natural = mean(draws().map(|d| strength(hair_color(anyone, d, d.lane(9)))));
+        assert!(natural < 0.05, "{natural}");
+        assert!(draws().all(|d| strength(dye(d)) > 4.0 * natural));
     }
 
     #[test]

@@ -24,6 +24,7 @@ mod place;
 mod poisson_disk;
 mod pose;
 mod quantile;
+mod style;
 mod value;
 
 pub use value::number;

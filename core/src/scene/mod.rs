@@ -12,8 +12,8 @@ mod person;
 
 pub use camera::Camera;
 pub use person::{
-    Body, Bottom, BottomKind, HairStyle, HandShape, Look, Outfit, Person, Pose, PoseBlend, Sex,
-    Shoes, Top,
+    BeardStyle, Body, Bottom, BottomKind, Glasses, HairStyle, HandShape, Headwear, HeadwearKind,
+    Look, Outfit, Person, Pose, PoseBlend, Sex, Shoes, Top,
 };
 
 /// Everything that one frame shows.

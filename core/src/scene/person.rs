@@ -65,6 +65,7 @@ pub struct Body {
     Clone,
     Copy,
     Debug,
+    Default,
     PartialEq,
     Eq,
     Hash,
@@ -77,15 +78,172 @@ pub struct Body {
 #[serde(rename_all = "snake_case")]
 pub enum HairStyle {
     /// None.
+    #[default]
     Bald,
+    /// A wreath round a bald crown.
+    Balding,
     /// A few millimetres.
     Cropped,
-    /// A cap of short hair.
+    /// Close at the sides, a little longer on top.
+    CrewCut,
+    /// Loose short hair that falls away from the whorl.
     Short,
-    /// A thick round cap.
+    /// Short hair combed away from a parting on the left.
+    SideParting,
+    /// Short, brushed forwards into a fringe.
+    Pixie,
+    /// A round cloud of tight curls.
     Afro,
-    /// Down to the shoulders.
-    Long,
+    /// Loose curls down to the jaw.
+    Curly,
+    /// Straight down to the jaw.
+    Bob,
+    /// Straight, over the shoulders.
+    #[serde(alias = "long")]
+    LongStraight,
+    /// Wavy, over the shoulders.
+    LongWavy,
+    /// Drawn back into a tail.
+    Ponytail,
+    /// Drawn back into a knot.
+    Bun,
+    /// Parted in the middle, two braids in front of the shoulders.
+    Braids,
+}
+
+impl HairStyle {
+    /// All styles.
+    pub const ALL: [Self; 15] = [
+        Self::Bald,
+        Self::Balding,
+        Self::Cropped,
+        Self::CrewCut,
+        Self::Short,
+        Self::SideParting,
+        Self::Pixie,
+        Self::Afro,
+        Self::Curly,
+        Self::Bob,
+        Self::LongStraight,
+        Self::LongWavy,
+        Self::Ponytail,
+        Self::Bun,
+        Self::Braids,
+    ];
+}
+
+/// Hair on the face.
+#[derive(
+    Clone,
+    Copy,
+    Debug,
+    Default,
+    PartialEq,
+    Eq,
+    Hash,
+    PartialOrd,
+    Ord,
+    Serialize,
+    Deserialize,
+    schemars::JsonSchema,
+)]
+#[serde(rename_all = "snake_case")]
+pub enum BeardStyle {
+    /// Shaven, or none grows.
+    #[default]
+    None,
+    /// A few days old.
+    Stubble,
+    /// On the upper lip.
+    Moustache,
+    /// Round the mouth and on the chin.
+    Goatee,
+    /// Cheeks, chin and upper lip.
+    Full,
+}
+
+impl BeardStyle {
+    /// All styles.
+    pub const ALL: [Self; 5] =
+        [Self::None, Self::Stubble, Self::Moustache, Self::Goatee, Self::Full];
+}
+
+/// What is worn on the head.
+#[derive(
+    Clone,
+    Copy,
+    Debug,
+    Default,
+    PartialEq,
+    Eq,
+    Hash,
+    PartialOrd,
+    Ord,
+    Serialize,
+    Deserialize,
+    schemars::JsonSchema,
+)]
+#[serde(rename_all = "snake_case")]
+pub enum HeadwearKind {
+    /// Nothing.
+    #[default]
+    None,
+    /// A cap with a visor.
+    Cap,
+    /// A knitted cap.
+    Beanie,
+    /// A hat with a brim all round.
+    BrimmedHat,
+    /// A scarf that leaves only the face free.
+    Headscarf,
+}
+
+impl HeadwearKind {
+    /// All kinds.
+    pub const ALL: [Self; 5] =
+        [Self::None, Self::Cap, Self::Beanie, Self::BrimmedHat, Self::Headscarf];
+}
+
+/// What is worn on the head, and its colour.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Headwear {
+    /// Which.
+    pub kind: HeadwearKind,
+    /// Linear.
+    pub color: [f64; 3],
+}
+
+/// What is worn in front of the eyes.
+#[derive(
+    Clone,
+    Copy,
+    Debug,
+    Default,
+    PartialEq,
+    Eq,
+    Hash,
+    PartialOrd,
+    Ord,
+    Serialize,
+    Deserialize,
+    schemars::JsonSchema,
+)]
+#[serde(rename_all = "snake_case")]
+pub enum Glasses {
+    /// Nothing.
+    #[default]
+    None,
+    /// A thin frame with clear lenses.
+    Thin,
+    /// A thick dark frame with clear lenses.
+    Thick,
+    /// Dark lenses.
+    Sunglasses,
+}
+
+impl Glasses {
+    /// All kinds.
+    pub const ALL: [Self; 4] = [Self::None, Self::Thin, Self::Thick, Self::Sunglasses];
 }
 
 /// What a person looks like beyond the body's shape. Colours are linear.
@@ -95,8 +253,17 @@ pub struct Look {
     pub skin_color: [f64; 3],
     /// Hair on the head.
     pub hair: HairStyle,
-    /// Hair and brows.
+    /// Hair, brows and beard.
     pub hair_color: [f64; 3],
+    /// Hair on the face.
+    #[serde(default)]
+    pub beard: BeardStyle,
+    /// On the head.
+    #[serde(default)]
+    pub headwear: Headwear,
+    /// In front of the eyes.
+    #[serde(default)]
+    pub glasses: Glasses,
     /// Iris.
     pub iris_color: [f64; 3],
     /// Local face targets by their name in the figure library, with their amount (0..1).

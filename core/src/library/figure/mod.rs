@@ -5,20 +5,23 @@
 
 use std::io::Read;
 use std::ops::Range;
-use std::sync::{Arc, LazyLock};
+use std::sync::{Arc, LazyLock, OnceLock};
 
 pub mod data;
 mod eye;
 pub mod predict;
 mod stream;
+mod whiskers;
 
 pub use data::{FigureData, Group, GroupId, LOD_COUNT, Lod};
 use data::{KEYPOINT_VERTICES, MAX_FACTORS};
+pub use whiskers::{ScalpShade, beard, wreath};
 
 use glam::DVec3;
 
 use crate::library::mesh::SkinVertex;
 use crate::library::texture::{Encoding, Texture};
+use crate::scene::BeardStyle;
 
 /// Joints of the rig.
 pub const JOINT_COUNT: usize = 52;
@@ -56,6 +59,8 @@ pub struct Figure {
     data: FigureData,
     skin: Vec<SkinVertex>,
     skin_mask: Arc<Texture>,
+    /// Skin masks with other scalps and beards, made when first asked for.
+    painted: [OnceLock<Arc<Texture>>; 3 * BeardStyle::ALL.len()],
     eye_mask: Arc<Texture>,
     reach_margin_m: [f64; JOINT_COUNT],
 }
@@ -124,7 +129,8 @@ impl Figure {
             .collect();
         let skin_mask = Arc::new(mask_texture(&data.mask));
         let reach_margin_m = reach_margins_m(&data, &skin);
-        Ok(Self { data, skin, skin_mask, eye_mask: Arc::new(eye::mask()), reach_margin_m })
+        let eye_mask = Arc::new(eye::mask());
+        Ok(Self { data, skin, skin_mask, painted: Default::default(), eye_mask, reach_margin_m })
     }
 
     /// The raw tables.
@@ -262,6 +268,16 @@ impl Figure {
     #[must_use]
     pub const fn skin_mask(&self) -> &Arc<Texture> {
         &self.skin_mask
+    }
+
+    /// The same with another scalp and the shade of a beard in alpha; made once, 5.6 MB each.
+    #[must_use]
+    pub fn painted_skin_mask(&self, scalp: ScalpShade, beard: BeardStyle) -> &Arc<Texture> {
+        if scalp == ScalpShade::Full && beard == BeardStyle::None {
+            return &self.skin_mask;
+        }
+        self.painted[scalp as usize * BeardStyle::ALL.len() + beard as usize]
+            .get_or_init(|| whiskers::mask(&self.data, &self.skin_mask, scalp, beard))
     }
 
     /// Masks over an eyeball: red iris, green pupil and its dark rim, blue the veined outer white, alpha a

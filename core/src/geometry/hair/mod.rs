@@ -1,0 +1,462 @@
+//! Hair on the head: a cap on the scalp, locks combed over it, and what hangs down.
+//!
+//! A person's scalp and skin flow in, triangles flow out, in three ranges: what lies underneath,
+//! the locks, and those among them that catch the light, so that each can have its own tone. There
+//! is no transparency: locks are ribbons with pointed ends that reach beyond the cap's border.
+//! Coarser levels of detail have fewer and wider ones, the coarsest the cap alone. Colours are not
+//! decided here.
+//!
+//! | file | what it does |
+//! |---|---|
+//! | `scalp` | the grid of roots, and the head's own coordinates |
+//! | `near` | distance to skin and clothes |
+//! | `strand` | combs a line over them and makes a ribbon or a tube of it |
+//! | `style` | the table of styles |
+//! | `gathered` | ponytails, knots and braids |
+
+mod gathered;
+pub(super) mod near;
+pub(super) mod scalp;
+pub(super) mod strand;
+mod style;
+
+use std::ops::Range;
+
+use glam::Vec3;
+
+use self::near::Near;
+use self::scalp::{COLUMNS, ROWS, Root, Scalp};
+use self::strand::{Comb, Dice, Path, Ribbon, UV_PER_M, push};
+use self::style::{Form, Length, Locks, Tail};
+use super::body::RestBody;
+use super::garment::step;
+use crate::base::hash::Hasher;
+use crate::library::figure::Figure;
+use crate::library::mesh::{Mesh, SkinVertex};
+use crate::scene::{HairStyle, HeadwearKind, Person};
+
+/// Locks by level of detail: share of the finest count, width, and share of the points.
+const LEVELS: [(f32, f32, f32); 3] = [(1.0, 1.0, 1.0), (0.36, 1.55, 0.65), (0.14, 2.3, 0.5)];
+/// Roots start a little under the skin.
+const SUNK_M: f32 = 0.0014;
+
+/// A person's head while it is dressed.
+pub(super) struct Head {
+    pub scalp: Scalp,
+    pub near: Near,
+    /// Level of detail.
+    pub lod: usize,
+    /// Whatever is random about the hair follows from it.
+    pub seed: u64,
+    /// What is worn: hair under it lies flat.
+    pub headwear: HeadwearKind,
+    joints: [u8; 3],
+}
+
+impl Head {
+    /// `skin` are the positions of the skin's vertices at this level.
+    pub fn new(
+        figure: &Figure,
+        person: &Person,
+        rest: &RestBody,
+        lod: usize,
+        skin: &[Vec3],
+    ) -> Self {
+        let scalp = Scalp::new(figure, rest);
+        let clothes_m = 0.014 + (person.outfit.top.looseness_m as f32).clamp(0.0, 0.06);
+        let hangs = style::form(person.look.hair)
+            .is_some_and(|f| f.sheet_y.is_some() || f.tail != Tail::None);
+        let hangs = hangs || person.look.headwear.kind == HeadwearKind::Headscarf;
+        let above_y = if hangs { 0.36 } else { 0.56 };
+        let near = Near::new(figure, &scalp.frame, lod, skin, (above_y, clothes_m));
+        let joint = |name: &str| {
+            let names = figure.joint_names();
+            names.iter().position(|n| n == name).unwrap_or(0) as u8
+        };
+        Self {
+            near,
+            lod,
+            seed: seed(person),
+            headwear: person.look.headwear.kind,
+            joints: [joint("Head"), joint("Neck"), joint("Spine2")],
+            scalp,
+        }
+    }
+
+    /// Weights of what is fixed to the head.
+    pub fn on_head(&self) -> SkinVertex {
+        SkinVertex { joints: [self.joints[0], 0, 0, 0], weights: [255, 0, 0, 0] }
+    }
+
+    /// Weights of what hangs from it: the lower, the more it follows neck and upper back.
+    pub fn hanging(&self, p: Vec3) -> SkinVertex {
+        let y = self.scalp.frame.local(p).y;
+        let low = 1.0 - step(0.55, 0.68, y);
+        let neck = (70.0 * low) as u8;
+        let back = (60.0 * low + 90.0 * (1.0 - step(0.47, 0.58, y))) as u8;
+        SkinVertex {
+            joints: [self.joints[0], self.joints[1], self.joints[2], 0],
+            weights: [255 - neck - back, neck, back, 0],
+        }
+    }
+
+    /// Local height above which a place is under the headwear; nothing if none presses the hair.
+    pub fn brim_y(&self, l: Vec3) -> Option<f32> {
+        super::headwear::edge_y(self.headwear, l.z)
+    }
+}
+
+/// A number of the person's own: the same whatever the person wears.
+fn seed(person: &Person) -> u64 {
+    let b = &person.body;
+    let mut hasher = Hasher::new();
+    let sizes = [b.age_years, b.stature_m, b.bmi_kg_m2, b.muscle, b.proportions, b.cup, b.firmness];
+    sizes.iter().chain(&b.ancestry).for_each(|v| hasher.number(*v));
+    for (name, amount) in &person.look.face {
+        hasher.bytes(name.as_bytes());
+        hasher.number(*amount);
+    }
+    hasher.finish().iter().take(8).fold(0, |all, byte| all << 8 | u64::from(*byte))
+}
+
+/// Adds a person's hair: the ranges of what lies underneath, of the locks, and of the light ones.
+pub(super) fn add(mesh: &mut Mesh, head: &Head, style: HairStyle) -> [Range<u32>; 3] {
+    let start = mesh.triangles.len() as u32;
+    let mut ends = [start; 3];
+    let covered = head.headwear == HeadwearKind::Headscarf;
+    if let Some(form) = style::form(style).filter(|_| !covered) {
+        let grower = Grower { head, form: &form, style };
+        grower.cap(mesh);
+        if let Some(y) = form.sheet_y {
+            grower.sheet(mesh, y);
+        }
+        gathered::add_cores(&grower, mesh);
+        ends[0] = mesh.triangles.len() as u32;
+        for (tone, end) in [(0, 1), (1, 2)] {
+            if let (Some(locks), Some(_)) = (&form.locks, LEVELS.get(head.lod)) {
+                grower.locks(mesh, locks, tone);
+                gathered::add_locks(&grower, mesh, tone);
+            }
+            ends[end] = mesh.triangles.len() as u32;
+        }
+    }
+    [start..ends[0], ends[0]..ends[1], ends[1]..ends[2]]
+}
+
+/// Grows one person's hair.
+struct Grower<'a> {
+    head: &'a Head,
+    form: &'a Form,
+    style: HairStyle,
+}
+
+impl Grower<'_> {
+    fn scale(&self) -> f32 {
+        self.head.scalp.frame.scale
+    }
+
+    /// Whether the level is so coarse that there are no locks.
+    fn alone(&self) -> bool {
+        self.head.lod >= LEVELS.len()
+    }
+
+    /// Where the parting runs, local.
+    fn part_x(&self) -> f32 {
+        match self.style {
+            HairStyle::Braids => 0.0,
+            HairStyle::Bob | HairStyle::LongStraight | HairStyle::LongWavy => {
+                Dice::new(self.head.seed, 1).range(-0.030, 0.030)
+            }
+            _ => 0.030,
+        }
+    }
+
+    /// Distance of the cap from the skin at a root, metres.
+    fn cap_m(&self, root: &Root) -> f32 {
+        let cap = &self.form.cap;
+        let left = 1.0 - (root.depth / cap.taper_m).min(1.0);
+        let top = cap.side + (1.0 - cap.side) * root.n.y.max(0.0);
+        let (amount, size) = cap.lump;
+        let lump = lump(root.local / size, self.head.seed);
+        let mut thick = cap.thick_m * (1.0 - left * left) * top * (1.0 + amount * lump);
+        if let (true, Some(locks)) = (self.alone(), &self.form.locks) {
+            thick += 0.5 * (locks.clear_m.0 + locks.layer_m) * (1.0 - left * left);
+        }
+        if matches!(self.style, HairStyle::SideParting | HairStyle::Braids | HairStyle::Bob) {
+            // A furrow along the parting.
+            let off = (root.local.x - self.part_x()).abs();
+            let on_top = step(0.80, 0.82, root.local.y) * step(-0.02, 0.02, root.local.z);
+            thick *= 1.0 - 0.55 * on_top * (1.0 - step(0.0, 0.009, off));
+        }
+        if self.style == HairStyle::Balding {
+            let here = style::wreath(root.local);
+            thick = thick * here - 0.003 * (1.0 - here);
+        }
+        if let Some(edge) = self.head.brim_y(root.local) {
+            // Pressed flat under a hat, and bulging less just below it.
+            let under = step(edge - 0.035, edge, root.local.y);
+            thick = thick.min(0.004 + 0.030 * (1.0 - under) * (1.0 - under));
+        }
+        self.scale() * thick
+    }
+
+    /// The outer surface of the cap.
+    fn cap(&self, mesh: &mut Mesh) {
+        let skip = [1, 1, 2, 2, 4][self.head.lod];
+        let rows: Vec<usize> =
+            (0..=ROWS).filter(|r| (ROWS - r).is_multiple_of(skip) || *r == 0).collect();
+        let mut points = Vec::with_capacity(rows.len() * COLUMNS);
+        let mut uvs = Vec::with_capacity(points.capacity());
+        for &row in &rows {
+            for column in (0..=COLUMNS).step_by(skip) {
+                let root = self.ragged(row, column);
+                points.push(root.p + root.n * (self.cap_m(&root) - SUNK_M * self.scale()));
+                let along = (root.local.y - 0.85).abs() * UV_PER_M[1] * 1.3;
+                uvs.push([column as f32 * 4.0 / COLUMNS as f32, along]);
+            }
+        }
+        let first = mesh.positions.len();
+        let start = mesh.triangles.len();
+        add_grid(mesh, &points, &uvs, COLUMNS / skip + 1, true, &|_| self.head.on_head());
+        if self.style == HairStyle::Balding {
+            // The bald crown lies under the skin.
+            let local = |v: u32| self.head.scalp.frame.local(points[v as usize - first]);
+            let tail = mesh.triangles.split_off(start);
+            let grows = |t: &[u32; 3]| t.iter().any(|&v| style::wreath(local(v)) > 0.0);
+            mesh.triangles.extend(tail.into_iter().filter(grows));
+        }
+    }
+
+    /// A root of the grid; near the hairline it is moved inwards, more here and less there.
+    fn ragged(&self, row: usize, column: usize) -> Root {
+        let near = (row as f32 / ROWS as f32).powi(4);
+        let wander =
+            0.5 + 0.5 * lump(self.head.scalp.root(ROWS, column).local / 0.011, self.head.seed);
+        self.head.scalp.at(row as f32 - self.form.cap.ragged * 1.6 * wander * near, column as f32)
+    }
+
+    fn comb<'a>(&'a self, locks: &Locks, flow: &'a dyn Fn(Vec3, &Root) -> Vec3) -> Comb<'a> {
+        Comb {
+            near: &self.head.near,
+            frame: &self.head.scalp.frame,
+            flow,
+            yields: locks.yields,
+            clings: locks.clings,
+            hugs_y: if locks.flow == style::Flow::Fall { 0.75 } else { 2.0 },
+        }
+    }
+
+    fn tie(&self) -> Vec3 {
+        let root = self.head.scalp.at(style::TIE_HIGH.0, style::TIE_HIGH.1);
+        self.head.scalp.frame.local(root.p + root.n * (0.012 * self.scale()))
+    }
+
+    /// Tie behind an ear, local.
+    fn side_tie(&self, side: f32) -> Vec3 {
+        let frame = &self.head.scalp.frame;
+        let p = frame.world(style::side_tie(side));
+        let off = |(d, n): (f32, Vec3)| p + n * (0.010 * frame.scale - d);
+        frame.local(self.head.near.surface(p).map_or(p, off))
+    }
+
+    /// The line of one lock.
+    fn line(&self, locks: &Locks, root: &Root, dice: &mut Dice) -> Path {
+        let s = self.scale();
+        let part_x = self.part_x();
+        let tie = if self.form.tail == Tail::Braids {
+            self.side_tie(if root.local.x > part_x { 1.0 } else { -1.0 })
+        } else {
+            self.tie()
+        };
+        let stray = Vec3::new(dice.range(-1.0, 1.0), dice.range(-1.0, 1.0), dice.range(-1.0, 1.0));
+        let stray = stray * if locks.clings > 0.9 { 0.02 } else { 0.16 };
+        let flow = |l: Vec3, root: &Root| {
+            let d = style::direction(locks.flow, l, root, part_x, tie);
+            d.normalize_or(Vec3::NEG_Y) + stray
+        };
+        let comb = self.comb(locks, &flow);
+        let lift = dice.unit();
+        let higher = (root.depth / 0.10).min(1.0);
+        let cap = self.cap_m(root);
+        let end_m = s * (locks.clear_m.0 + (locks.clear_m.1 - locks.clear_m.0) * lift)
+            + s * locks.layer_m * higher;
+        let pressed = self.head.brim_y(root.local).is_some();
+        let end_m = if pressed { end_m.min(0.012 * s) } else { end_m };
+        let start = (cap - 0.002 * s).max(0.0);
+        match locks.length {
+            Length::Between(low, high) => {
+                // Cut shorter at the nape.
+                let nape = 0.45 + 0.55 * step(0.68, 0.775, root.local.y);
+                let length = s * dice.range(low, high) * nape;
+                let steps = if length > 0.08 * s { 10.0 } else { 5.0 };
+                let clear = |way: f32| {
+                    let t = (way / length).min(1.0);
+                    (start + 0.3 * cap * t) * (1.0 - t * t) + end_m * t
+                };
+                comb.line(root, (start, length / steps), |way, _| way > 0.98 * length, clear)
+            }
+            Length::Down(y, spread) => {
+                let y = y + spread * dice.range(-1.0, 1.0);
+                let clear = |way: f32| start + (end_m - start) * step(0.0, 0.08 * s, way);
+                comb.line(root, (start, 0.018 * s), |_, l| l.y < y, clear)
+            }
+            Length::ToTie => {
+                let near = |l: Vec3| (l - tie).length() < 0.016;
+                let clear = |way: f32| start + (end_m - start) * step(0.0, 0.05 * s, way);
+                comb.line(root, (start, 0.012 * s), |_, l| near(l), clear)
+            }
+        }
+    }
+
+    /// Locks of one of two tones: most of them, and the few light ones.
+    fn locks(&self, mesh: &mut Mesh, locks: &Locks, tone: usize) {
+        let (share, wide, fine) = LEVELS[self.head.lod];
+        let count = (locks.count as f32 * share) as usize;
+        let points = ((locks.points as f32 * fine) as usize).max(3);
+        let areas = self.head.scalp.areas(|root| self.density(root));
+        let skin = |p: Vec3| self.skin(p);
+        for i in 0..count {
+            let mut dice = Dice::new(self.head.seed, 16 + i as u64);
+            if usize::from(dice.unit() < 0.35) != tone {
+                continue;
+            }
+            let share = (i as f32 + dice.unit()) / count as f32;
+            let root = self.head.scalp.drawn(&areas, share, [dice.unit(), dice.unit()]);
+            let mut path = self.line(locks, &root, &mut dice).resampled(points);
+            let s = self.scale();
+            if let Some((radius, turn)) = locks.curl {
+                let radius = radius * s * dice.range(0.7, 1.3);
+                // Neighbours wave together where waves are long.
+                let apart = (0.02 / turn).min(1.0);
+                let phase = 3.0 * root.column / COLUMNS as f32 + apart * dice.unit();
+                path.curl(radius, turn * s * (1.0 + apart * dice.range(-0.2, 0.25)), phase);
+            }
+            let ribbon = Ribbon {
+                width_m: locks.width_m * s * wide * dice.range(0.65, 1.35),
+                root: 0.6,
+                tilt: dice.range(-0.35, 0.35),
+                round: 0.55,
+                u: dice.unit() * 4.0,
+            };
+            ribbon.add(mesh, &path, &skin);
+        }
+    }
+
+    fn density(&self, root: &Root) -> f32 {
+        if let Some(edge) = self.head.brim_y(root.local)
+            && root.local.y > edge - 0.006
+        {
+            return 0.0;
+        }
+        match self.style {
+            HairStyle::Balding => step(0.5, 0.9, style::wreath(root.local)),
+            // So short that ends beyond the border would be specks.
+            HairStyle::Cropped => step(0.003, 0.009, root.depth),
+            // Ends at the hairline frame the face.
+            HairStyle::Short
+            | HairStyle::Pixie
+            | HairStyle::SideParting
+            | HairStyle::Ponytail
+            | HairStyle::Bun
+            | HairStyle::Braids => 1.0 + 0.9 * (1.0 - step(0.0, 0.03, root.depth)),
+            _ => 1.0,
+        }
+    }
+
+    fn skin(&self, p: Vec3) -> SkinVertex {
+        if self.form.sheet_y.is_some() { self.head.hanging(p) } else { self.head.on_head() }
+    }
+
+    /// A sheet of hair from temple round the back to temple, under the locks.
+    fn sheet(&self, mesh: &mut Mesh, end_y: f32) {
+        const FIRST: usize = 11;
+        let Some(locks) = &self.form.locks else { return };
+        let (every, rows) = [(2, 12), (2, 9), (3, 6), (6, 5), (6, 4)][self.head.lod];
+        let straight = Locks { curl: None, clings: 0.5, ..*locks };
+        let flow = |l: Vec3, root: &Root| {
+            style::direction(style::Flow::Fall, l, root, self.part_x(), self.tie())
+        };
+        let comb = self.comb(&straight, &flow);
+        let s = self.scale();
+        let columns: Vec<usize> = (FIRST..=COLUMNS - FIRST).step_by(every).collect();
+        let (mut points, mut uvs) = (Vec::new(), Vec::new());
+        for &column in &columns {
+            let root = self.head.scalp.at(10.5, column as f32);
+            let start = (self.cap_m(&root) - 0.003 * s).max(0.001);
+            let uneven = lump(Vec3::new(column as f32 * 0.7, 0.0, 3.0), self.head.seed);
+            let end = end_y + 0.02 * uneven;
+            // Without locks over it the sheet stands for them.
+            let off = if self.alone() { locks.clear_m.1 + locks.layer_m } else { locks.clear_m.0 };
+            let clear = |_: f32| off * s;
+            let path = comb.line(&root, (start, 0.014 * s), |_, l| l.y < end, clear);
+            let path = path.resampled(rows);
+            let mut way = 0.0;
+            for (i, p) in path.points.iter().enumerate() {
+                way += if i > 0 { (*p - path.points[i - 1]).length() } else { 0.0 };
+                points.push(*p);
+                uvs.push([column as f32 * 4.0 / COLUMNS as f32, 0.5 + way * UV_PER_M[1]]);
+            }
+        }
+        add_grid(mesh, &points, &uvs, rows, false, &|p| self.head.hanging(p));
+    }
+}
+
+/// Adds a grid of points, `across` in a row, with smooth normals. Its front is where columns run
+/// to the right and rows down; where it is a ring, the first and the last column meet.
+pub(super) fn add_grid(
+    mesh: &mut Mesh,
+    points: &[Vec3],
+    uvs: &[[f32; 2]],
+    across: usize,
+    ring: bool,
+    skin: &dyn Fn(Vec3) -> SkinVertex,
+) {
+    let rows = points.len() / across;
+    let first = mesh.positions.len() as u32;
+    for row in 0..rows {
+        for column in 0..across {
+            let at = |r: usize, c: usize| points[r * across + c];
+            let wrap = |c: usize, step: isize| match (ring, c as isize + step) {
+                (true, -1) => across - 2,
+                (true, n) if n as usize == across => 1,
+                (_, n) => (n.max(0) as usize).min(across - 1),
+            };
+            let (up, down) = (row.saturating_sub(1), (row + 1).min(rows - 1));
+            let right = at(row, wrap(column, 1)) - at(row, wrap(column, -1));
+            let below = at(down, column) - at(up, column);
+            let mut n = below.cross(right);
+            if n.length_squared() < 1e-16 {
+                // Where a row is one point: from the next.
+                let next = (row + 1).min(rows - 1);
+                let right = at(next, across / 2) - at(next, 0);
+                let back = at(next, across / 4) - at(next, 3 * across / 4);
+                n = back.cross(right);
+                n = if n.y < 0.0 { -n } else { n };
+            }
+            let i = row * across + column;
+            push(mesh, points[i], n.normalize_or(Vec3::Y), uvs[i], skin(points[i]));
+        }
+    }
+    for row in 1..rows {
+        for column in 1..across {
+            let v = |r: usize, c: usize| first + (r * across + c) as u32;
+            let [a, b] = [v(row - 1, column - 1), v(row - 1, column)];
+            let [d, c] = [v(row, column - 1), v(row, column)];
+            mesh.triangles.push([a, d, c]);
+            if points[(row - 1) * across + column - 1] != points[(row - 1) * across + column] {
+                mesh.triangles.push([a, c, b]);
+            }
+        }
+    }
+}
+
+/// Unevenness in -1..1 that differs from person to person, smooth over a distance of about 1.
+pub(super) fn lump(p: Vec3, seed: u64) -> f32 {
+    let mut dice = Dice::new(seed, 7);
+    let mut wave = |a: f32, b: f32, c: f32| {
+        let phase = dice.range(0.0, std::f32::consts::TAU);
+        libm::sinf(p.x * a + p.y * b + p.z * c + phase)
+    };
+    (wave(1.9, 1.2, -0.8) + wave(-1.0, 2.3, 1.7) + wave(2.7, -0.6, 2.2) + wave(0.4, 1.3, -2.6))
+        / 3.0
+}
