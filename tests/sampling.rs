@@ -169,7 +169,7 @@ fn a_switch_changes_nothing_else() {
         (|d| d.background.floor.enabled = true, &["objects/floor"]),
         (|d| d.occluders.enabled = false, &["objects/occluder"]),
         (|d| d.people.enabled = false, &["people"]),
-        // Automatic looks follow the body; the shape of the face does not.
+        // Automatic looks and clothes follow the body; the shape of the face does not.
         (
             |d| d.people.body.enabled = false,
             &[
@@ -178,6 +178,7 @@ fn a_switch_changes_nothing_else() {
                 "people/*/look/hair_color",
                 "people/*/look/iris_color",
                 "people/*/look/hair",
+                "people/*/outfit",
             ],
         ),
         (|d| d.people.look.enabled = false, &["people/*/look"]),
@@ -231,7 +232,13 @@ fn scenes_hold_only_what_makes_sense() {
                 assert!((0.6..2.1).contains(&body.stature_m), "{body:?}");
                 assert!((body.ancestry.iter().sum::<f64>() - 1.0).abs() < 1e-9);
                 let colors = [look.skin_color, look.hair_color, look.iris_color];
-                let cloth = [outfit.top.color, outfit.bottom.color, outfit.shoes.color];
+                let cloth = [
+                    outfit.top.color,
+                    outfit.bottom.color,
+                    outfit.outer.color,
+                    outfit.shoes.color,
+                    outfit.shoes.sock_color,
+                ];
                 for channel in colors.into_iter().chain(cloth).flatten() {
                     assert!((0.0..=1.0).contains(&channel));
                 }

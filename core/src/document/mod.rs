@@ -23,6 +23,7 @@ mod place;
 pub mod presets;
 mod validate;
 mod vector;
+mod wardrobe;
 
 pub use camera::{Camera, Image};
 pub use lights::{
@@ -33,7 +34,7 @@ pub use param::{
     Auto, AutoWord, Beta, Binomial, Chance, Choice, Distribution, Flag, Lognormal, Normal, Param,
     Triangular, Weighted,
 };
-pub use people::{Ancestry, Body, Bottom, Look, Origin, People, Pose, Shoes, Top, Wardrobe};
+pub use people::{Ancestry, Body, Look, Origin, People, Pose};
 pub use place::{
     Background, Floor, Grid, Ground, Materials, Occluders, Placement, PoissonDisk, Row, Wall,
 };
@@ -42,6 +43,7 @@ pub use vector::{
     BoxRegion, Color, ColorLaw, GridRegion, JointRotation, Region, Rotation, RotationLaw, Round,
     Vector,
 };
+pub use wardrobe::{Bottom, Outer, OutfitRow, Season, Shoes, Top, Wardrobe};
 
 /// The version of the config that this program writes.
 pub const VERSION: u32 = 1;

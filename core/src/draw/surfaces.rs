@@ -9,6 +9,9 @@ use crate::library::Library;
 use crate::library::texture::Texture;
 use crate::scene;
 
+/// Normals of folded cloth.
+const FOLDS: &str = "normal/detail/folds";
+
 /// What has been put into a draw list so far.
 #[derive(Default)]
 pub struct Surfaces {
@@ -48,10 +51,11 @@ impl Surfaces {
         Ok(push(list, made))
     }
 
-    /// The surface of a part of a person.
+    /// The surface of a part of a person; `near` where its relief can be made out.
     pub fn of_person(
         &mut self,
         surface: &Surface,
+        near: bool,
         library: &Library,
         list: &mut DrawList,
     ) -> Result<u32, DrawError> {
@@ -67,9 +71,17 @@ impl Surfaces {
                 Some(self.shared("figure/eye_mask", list, || Arc::clone(library.figure.eye_mask())))
             }
         };
+        let normal_map = if near && surface.relief_strength > 0.0 {
+            let own = surface.texture.as_deref().and_then(|id| library.textures.normal_map(id));
+            self.optional(Some(own.as_deref().unwrap_or(FOLDS)), library, list)?
+        } else {
+            None
+        };
         let made = abi::Material {
             base_color: surface.base_color,
             albedo_map,
+            normal_map,
+            normal_strength: surface.relief_strength,
             detail_map,
             detail_strength: surface.detail_strength,
             uv_repeat,

@@ -4,7 +4,7 @@
 //! made in [`super::person`]; textures' pixels are not known here.
 
 use super::person::PartKind;
-use crate::scene::{HairStyle, Look, Person};
+use crate::scene::{HairStyle, Look, Person, ShoeKind};
 
 /// Which mask texture colours a surface's layers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -51,13 +51,16 @@ pub struct Surface {
     pub detail: Detail,
     /// Its strength.
     pub detail_strength: f32,
+    /// Strength of the cloth's relief: that of its pattern, or else folds; 0 for none.
+    pub relief_strength: f32,
 }
 
 /// The surface of a part of a person.
 #[must_use]
 pub fn surface(kind: PartKind, person: &Person) -> Surface {
     let (look, outfit) = (&person.look, &person.outfit);
-    let (top, bottom, shoe) = (&outfit.top, &outfit.bottom, outfit.shoes.color);
+    let (top, bottom, outer) = (&outfit.top, &outfit.bottom, &outfit.outer);
+    let shoe = outfit.shoes.color;
     match kind {
         PartKind::Skin => skin_surface(look),
         PartKind::Eyes => eye_surface(look),
@@ -65,7 +68,12 @@ pub fn surface(kind: PartKind, person: &Person) -> Surface {
         PartKind::Hair => hair_surface(look),
         PartKind::Top => cloth(top.color, top.texture.as_ref(), top.hue_offset_deg),
         PartKind::Bottom => cloth(bottom.color, bottom.texture.as_ref(), bottom.hue_offset_deg),
+        PartKind::Outer => cloth(outer.color, outer.texture.as_ref(), outer.hue_offset_deg),
+        PartKind::Socks => cloth(outfit.shoes.sock_color, None, 0.0),
         PartKind::Shoes => plain(narrow(shoe), 0.45),
+        PartKind::Soles if outfit.shoes.kind == ShoeKind::Sneakers => {
+            plain([0.78, 0.77, 0.74], 0.8)
+        }
         PartKind::Soles => plain(sole_color(shoe), 0.8),
     }
 }
@@ -93,6 +101,7 @@ fn plain(base_color: [f32; 3], roughness: f32) -> Surface {
         hue_offset_deg: 0.0,
         detail: Detail::None,
         detail_strength: 0.0,
+        relief_strength: 0.0,
     }
 }
 
@@ -159,6 +168,7 @@ fn cloth(color: [f64; 3], texture: Option<&String>, hue_offset_deg: f64) -> Surf
         hue_offset_deg: hue_offset_deg as f32,
         detail: Detail::Cloth,
         detail_strength: 0.10,
+        relief_strength: 0.8,
         ..plain(narrow(color), 0.85)
     }
 }

@@ -17,6 +17,7 @@ mod keys;
 mod lights;
 mod look;
 mod outfit;
+mod outfit_table;
 mod people;
 mod place;
 mod poisson_disk;
@@ -141,12 +142,14 @@ pub fn check_assets(document: &Document, catalogue: &Catalogue) -> Vec<Problem> 
     let patterns = ("cloth pattern", &catalogue.cloth_patterns, true);
     let clips = ("clip", &catalogue.clips, false);
     let (top, bottom) = (&people.wardrobe.top, &people.wardrobe.bottom);
+    let outer = &people.wardrobe.outer;
     let all = [
         (wall.enabled, "background.wall.texture", &wall.texture, textures),
         (floor.enabled, "background.floor.texture", &floor.texture, textures),
         (occluders.enabled, "occluders.texture", &occluders.texture, textures),
         (people.enabled, "people.wardrobe.top.pattern", &top.pattern, patterns),
         (people.enabled, "people.wardrobe.bottom.pattern", &bottom.pattern, patterns),
+        (people.enabled, "people.wardrobe.outer.pattern", &outer.pattern, patterns),
         (people.enabled, "people.pose.clip", &people.pose.clip, clips),
     ];
     let mut problems = Vec::new();

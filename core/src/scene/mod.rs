@@ -8,12 +8,12 @@ use glam::{DQuat, DVec3};
 use serde::{Deserialize, Serialize};
 
 mod camera;
+mod outfit;
 mod person;
 
 pub use camera::Camera;
-pub use person::{
-    Body, Bottom, BottomKind, HairStyle, Look, Outfit, Person, Pose, Sex, Shoes, Top,
-};
+pub use outfit::{Bottom, BottomKind, Outer, OuterKind, Outfit, ShoeKind, Shoes, Top, TopKind};
+pub use person::{Body, HairStyle, Look, Person, Pose, Sex};
 
 /// Everything that one frame shows.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
