@@ -1,9 +1,11 @@
 //! Document to scene: what seeds, frames and switches mean across all sections.
 
-use figurant_core::document::{Choice, Document, Param, Problem, file, presets};
+use figurant_core::document::{
+    Auto, Choice, Document, OutfitRow, Param, Problem, Season, file, presets,
+};
 use figurant_core::library::textures::{TextureGroup, TextureLibrary};
 use figurant_core::sampling::{Catalogue, Counts, SampleError, Sampler, check_assets, counts};
-use figurant_core::scene::{Role, Scene, Sex};
+use figurant_core::scene::{BottomKind, OuterKind, Person, Role, Scene, Sex, ShoeKind, TopKind};
 use serde_json::Value;
 
 fn catalogue() -> Catalogue {
@@ -398,4 +400,70 @@ fn no_config_panics_hangs_or_gives_nonsense() {
         }
     }
     assert!(accepted > 100 && refused > 300, "{accepted} accepted, {refused} refused");
+}
+
+/// Everybody of some frames of the line-up, after a change to what they wear.
+fn dressed(change: impl FnOnce(&mut Document)) -> Vec<Person> {
+    let mut document = preset("lineup");
+    change(&mut document);
+    (0..60).flat_map(|frame| scene(&document, frame).people).collect()
+}
+
+#[test]
+fn people_dress_for_season_and_sex() {
+    let summer = dressed(|d| d.people.wardrobe.season = Choice::Always(Season::Summer));
+    assert!(summer.iter().all(|p| p.outfit.outer.kind == OuterKind::None));
+    let bare = |p: &&Person| p.outfit.bottom.kind == BottomKind::Shorts;
+    assert!(summer.iter().filter(bare).count() > summer.len() / 5);
+    let winter = dressed(|d| d.people.wardrobe.season = Choice::Always(Season::Winter));
+    assert!(winter.iter().filter(bare).count() == 0);
+    let coats = winter.iter().filter(|p| p.outfit.outer.kind != OuterKind::None).count();
+    assert!(coats > winter.len() / 2);
+    for p in summer.iter().chain(&winter) {
+        let skirt = p.outfit.bottom.kind.is_skirt();
+        assert!(!skirt || p.body.sex == Sex::Female, "{:?}", p.outfit);
+        assert!(p.outfit.top.kind != TopKind::TankTop || p.outfit.top.sleeve == 0.0);
+    }
+}
+
+#[test]
+fn a_document_brings_its_own_outfits() {
+    let row = |text: &str| serde_json::from_str::<OutfitRow>(text).unwrap();
+    let table = vec![
+        row(r#"{"sex": "male", "top": "shirt", "bottom": "jeans", "shoes": "boots"}"#),
+        row(r#"{"sex": "female", "age_years": [0, 30], "top": "tank_top", "bottom": "leggings"}"#),
+        row(r#"{"weight": 0, "sex": "female", "top": "hoodie", "bottom": "shorts"}"#),
+    ];
+    let people = dressed(|d| {
+        d.people.wardrobe.outfit = Auto::Given(table);
+        d.people.wardrobe.shoes.kind = Auto::Given(Choice::Always(ShoeKind::Sandals));
+    });
+    for p in people {
+        let outfit = (p.outfit.top.kind, p.outfit.bottom.kind);
+        let [man, woman] =
+            [(TopKind::Shirt, BottomKind::Jeans), (TopKind::TankTop, BottomKind::Leggings)];
+        match p.body.sex {
+            Sex::Male => assert_eq!(outfit, man),
+            Sex::Female if p.body.age_years <= 30.0 => assert_eq!(outfit, woman),
+            // No row is for her: she wears any that somebody wears.
+            Sex::Female => assert!(outfit == man || outfit == woman),
+        }
+        assert_eq!(p.outfit.shoes.kind, ShoeKind::Sandals, "what is given alone comes first");
+        assert_eq!(p.outfit.outer.kind, OuterKind::None);
+    }
+}
+
+#[test]
+fn outfits_that_make_no_sense_are_refused() {
+    let problem = |rows: &str| {
+        let mut document = preset("lineup");
+        document.people.wardrobe.outfit = Auto::Given(serde_json::from_str(rows).unwrap());
+        sample(&document, &catalogue(), 0).expect_err("it must be refused").to_string()
+    };
+    let none = problem("[]");
+    assert!(none.contains("people.wardrobe.outfit"), "{none}");
+    let weights = problem(r#"[{"weight": -1, "top": "shirt", "bottom": "jeans"}]"#);
+    assert!(weights.contains("people.wardrobe.outfit[0]"), "{weights}");
+    let ages = problem(r#"[{"age_years": [9, 3], "top": "shirt", "bottom": "jeans"}]"#);
+    assert!(ages.contains("people.wardrobe.outfit[0].age_years"), "{ages}");
 }

@@ -11,6 +11,8 @@ use crate::scene;
 
 /// Normals of folded cloth.
 const FOLDS: &str = "normal/detail/folds";
+/// Strength of the relief of cloth that has its own, knitwear and leather.
+const WEAVE_STRENGTH: f32 = 0.8;
 
 /// What has been put into a draw list so far.
 #[derive(Default)]
@@ -71,17 +73,18 @@ impl Surfaces {
                 Some(self.shared("figure/eye_mask", list, || Arc::clone(library.figure.eye_mask())))
             }
         };
-        let normal_map = if near && surface.relief_strength > 0.0 {
-            let own = surface.texture.as_deref().and_then(|id| library.textures.normal_map(id));
-            self.optional(Some(own.as_deref().unwrap_or(FOLDS)), library, list)?
-        } else {
-            None
+        let own = surface.texture.as_deref().and_then(|id| library.textures.normal_map(id));
+        let (relief, normal_strength) = match &own {
+            Some(id) => (id.as_str(), WEAVE_STRENGTH),
+            None => (FOLDS, surface.relief_strength),
         };
+        let shows = near && surface.relief_strength > 0.0;
+        let normal_map = self.optional(shows.then_some(relief), library, list)?;
         let made = abi::Material {
             base_color: surface.base_color,
             albedo_map,
             normal_map,
-            normal_strength: surface.relief_strength,
+            normal_strength,
             detail_map,
             detail_strength: surface.detail_strength,
             uv_repeat,

@@ -138,11 +138,13 @@ fn add_top(out: &mut Parts, cutter: &Cutter<'_>, worn: &Worn) {
     }
     if cutter.lod < 4 {
         let normals = layers::normals_of(shell, &worn.top);
-        let sewn: [(Piece, &dyn Fn(Place) -> f32); 4] = [
-            (Piece::Placket, &|_| SEWN_M),
-            (Piece::Pocket, &|at| POCKET_M * step(-0.01, 0.02, cuts.field(Piece::Pocket, at))),
-            (Piece::Collar, &|at| COLLAR_M + 0.2 * (0.012 - cuts.neck(at.p)).max(0.0)),
-            (Piece::Hood, &|at| hood_rise(cuts, at)),
+        let sewn: [(Piece, &dyn Fn(Place) -> [f32; 2]); 4] = [
+            (Piece::Placket, &|_| [SEWN_M, 0.0]),
+            (Piece::Pocket, &|at| {
+                [POCKET_M * step(-0.01, 0.02, cuts.field(Piece::Pocket, at)), 0.0]
+            }),
+            (Piece::Collar, &|at| collar_rise(cuts.neck(at.p))),
+            (Piece::Hood, &|at| [hood_rise(cuts, at), 0.0]),
         ];
         for (piece, rise) in sewn {
             if cuts.wears(piece) {
@@ -152,6 +154,11 @@ fn add_top(out: &mut Parts, cutter: &Cutter<'_>, worn: &Worn) {
         }
     }
     out.add(PartKind::Top, start..out.builder.mesh.triangles.len() as u32, true);
+}
+
+/// A collar stands up round the neck before it turns down.
+fn collar_rise(n: f32) -> [f32; 2] {
+    [COLLAR_M, 0.013 * step(0.020, 0.0, n)]
 }
 
 /// A roll that is thickest half way down.
@@ -171,7 +178,10 @@ fn add_outer(out: &mut Parts, cutter: &Cutter<'_>, worn: &Worn, outer: &[Vec3]) 
     }
     if cutter.lod < 4 {
         let normals = layers::normals_of(cutter.shell, outer);
-        let layer = raised(outer, &normals, &cutter.shell.places, |_| COLLAR_M + 0.002);
+        let layer = raised(outer, &normals, &cutter.shell.places, |at| {
+            let [off, up] = collar_rise(cutter.cuts.outer_neck(at.p));
+            [off + 0.002, up]
+        });
         cutter.cut(&mut out.builder, Piece::OuterCollar, &layer, cutter.rim());
     }
     out.add(PartKind::Outer, start..out.builder.mesh.triangles.len() as u32, true);

@@ -76,9 +76,46 @@ impl Tube {
             .map(flat)
             .map(|(t, q)| ((((t - from) / tube.step) as usize).min(rows - 2), q))
             .collect();
-        tube.centers = middles(&flat, rows);
+        tube.centers = tube.middles(&flat, rows);
         tube.radii = tube.sections(&flat, rows);
         Some(tube)
+    }
+
+    /// Rows for which a point after this row counts: those on both its sides, so that what lies
+    /// between them is outside it, and as many more as it takes to meet a whole ring of vertices.
+    fn near(&self, row: usize, rows: usize) -> std::ops::Range<usize> {
+        const RING_M: f32 = 0.022;
+        let more = (RING_M / self.step) as usize;
+        row.saturating_sub(more)..(row + 2 + more).min(rows)
+    }
+
+    /// Middle of the box round each row's points, smoothed; rows without points take that of the
+    /// row before.
+    fn middles(&self, flat: &[(usize, [f32; 2])], rows: usize) -> Vec<[f32; 2]> {
+        let mut boxes = vec![([f32::MAX; 2], [f32::MIN; 2]); rows];
+        for (row, q) in flat {
+            for row in self.near(*row, rows) {
+                let (low, high) = &mut boxes[row];
+                for c in 0..2 {
+                    (low[c], high[c]) = (low[c].min(q[c]), high[c].max(q[c]));
+                }
+            }
+        }
+        let mut last = [0.0; 2];
+        let rough: Vec<[f32; 2]> = boxes
+            .into_iter()
+            .map(|(low, high)| {
+                if low[0] <= high[0] {
+                    last = [(low[0] + high[0]) * 0.5, (low[1] + high[1]) * 0.5];
+                }
+                last
+            })
+            .collect();
+        let mean = |row: usize, c: usize| {
+            let around = &rough[row.saturating_sub(2)..(row + 3).min(rows)];
+            around.iter().map(|m| m[c]).sum::<f32>() / around.len() as f32
+        };
+        (0..rows).map(|row| [mean(row, 0), mean(row, 1)]).collect()
     }
 
     /// Convex cross sections: a tangent in each direction, and where rays from the middle meet
@@ -87,9 +124,7 @@ impl Tube {
         let n = self.columns;
         let mut reach = vec![f32::MIN; rows * n];
         for (row, q) in flat {
-            // A point counts for the rows on both its sides, so that what lies between them is
-            // outside it.
-            for row in [*row, *row + 1] {
+            for row in self.near(*row, rows) {
                 let [a, b] = [q[0] - self.centers[row][0], q[1] - self.centers[row][1]];
                 for (h, d) in reach[row * n..(row + 1) * n].iter_mut().zip(&self.directions) {
                     *h = h.max(a * d[0] + b * d[1]);
@@ -162,29 +197,6 @@ impl Tube {
         let out = (self.across * a + self.ahead * b).normalize_or(self.ahead);
         Spot { radius: mix(along(i), along(i + 1)), own, out }
     }
-}
-
-/// Middle of the box round each row's points; rows without points take that of the row before.
-fn middles(flat: &[(usize, [f32; 2])], rows: usize) -> Vec<[f32; 2]> {
-    let mut boxes = vec![([f32::MAX; 2], [f32::MIN; 2]); rows];
-    for (row, q) in flat {
-        for row in [*row, *row + 1] {
-            let (low, high) = &mut boxes[row];
-            for c in 0..2 {
-                (low[c], high[c]) = (low[c].min(q[c]), high[c].max(q[c]));
-            }
-        }
-    }
-    let mut last = [0.0; 2];
-    boxes
-        .into_iter()
-        .map(|(low, high)| {
-            if low[0] <= high[0] {
-                last = [(low[0] + high[0]) * 0.5, (low[1] + high[1]) * 0.5];
-            }
-            last
-        })
-        .collect()
 }
 
 /// Rows without points take the radii of the row before.

@@ -156,8 +156,8 @@ impl Cuts {
             Piece::Shoes => self.shoes(at),
             Piece::Sole => low_shoe(at.p),
             Piece::Socks => self.socks(at).min(0.02 - low_shoe(at.p)),
-            Piece::Collar => collar(self.neck(at.p), at.p, 0.026),
-            Piece::OuterCollar => collar(self.outer_neck(at.p), at.p, 0.030),
+            Piece::Collar => collar(self.neck(at.p), at.p, 0.024),
+            Piece::OuterCollar => collar(self.outer_neck(at.p), at.p, 0.026),
             Piece::Placket => self.placket(at),
             Piece::Pocket => pocket(at),
             Piece::Hood => self.hood(at.p),
@@ -200,8 +200,8 @@ impl Cuts {
     /// Lower edge of the top.
     fn hem(&self, at: Place) -> f32 {
         let y = if self.tucked() {
-            // Under the waistband, and at the seam of a dress just over the skirt's edge.
-            if self.bottom.is_dress() { DRESS_Y - 0.006 } else { SKIRT_Y - 0.05 }
+            // Under the skirt's edge.
+            if self.bottom.is_dress() { DRESS_Y - 0.05 } else { SKIRT_Y - 0.05 }
         } else {
             match self.top {
                 TopKind::Shirt => -0.012 - 0.02 * step(0.10, 0.0, at.p.x.abs()),
@@ -250,7 +250,7 @@ impl Cuts {
     }
 
     fn outer(&self, at: Place) -> f32 {
-        let y = if self.outer == OuterKind::Coat { COAT_Y - 0.015 } else { -0.018 };
+        let y = if self.outer == OuterKind::Coat { COAT_Y - 0.05 } else { -0.018 };
         let hem = at.p.y - y + on_arm(at);
         hem.min((0.985 - at.arm) * ARM_M).min(self.outer_neck(at.p)).min(self.front_gap(at.p))
     }
@@ -268,8 +268,8 @@ impl Cuts {
         strip.min(self.field(Piece::Top, at))
     }
 
-    fn outer_neck(&self, p: Vec3) -> f32 {
-        neck(0.05, p) - 0.006
+    pub fn outer_neck(&self, p: Vec3) -> f32 {
+        neck(0.0, p) - 0.003
     }
 
     /// About the distance from the top's neckline.

@@ -9,7 +9,7 @@ use glam::{DVec3, Vec3};
 
 use super::cut::smooth_normals;
 use super::drape::Tube;
-use super::garment::{ARM_M, Cuts, Piece, Place, step};
+use super::garment::{ARM_M, Cuts, LEG_M, Piece, Place, step};
 use super::skeleton::{JOINT_COUNT, Limb, Side};
 use crate::library::figure::{Figure, GroupId};
 use crate::scene::{BottomKind, TopKind};
@@ -204,6 +204,9 @@ pub(super) fn bottom(shell: &Shell<'_>, cuts: &Cuts, shoes: &[Vec3]) -> Vec<Vec3
         let shoe = (shoes[i] - shell.positions[i]).dot(shell.normals[i]) + LAYER_M;
         (0.6 * heights[i]).max(0.002).max(over_shoe * shoe)
     });
+    if !tight {
+        crease(shell, &mut layer, 0.0012 + 0.25 * cuts.bottom_m);
+    }
     part_legs(&shell.places, &mut layer);
     layer
 }
@@ -261,6 +264,7 @@ pub(super) fn top(
             over.map_or(0.0, |b| (b[i] - shell.positions[i]).dot(shell.normals[i]) + LAYER_M);
         (0.5 * heights[i]).max(0.0025).max(trousers)
     });
+    crease(shell, &mut layer, 0.0010 + 0.22 * cuts.top_m);
     part_legs(&shell.places, &mut layer);
     layer
 }
@@ -292,9 +296,11 @@ pub(super) fn outer(
         .zip(&heights)
         .map(|((p, n), h)| *p + *n * h.min(LAYER_M + cuts.outer_m))
         .collect();
-    let falls = Falls { trunk: 0.10, limb: 0.14 };
+    let falls = Falls { trunk: 0.10, limb: 0.24 };
     drape_top(shell, &mut layer, skirt, falls, |_| 1.0);
     shell.settle(&mut layer, &under, 2, |_| LAYER_M);
+    // What is over another layer's creases must not be under them.
+    crease(shell, &mut layer, 0.0012 + 0.22 * cuts.outer_m.max(cuts.top_m));
     part_legs(&shell.places, &mut layer);
     layer
 }
@@ -305,6 +311,36 @@ fn off_shoulders(at: &Place, n: Vec3) -> f32 {
     let above = step(0.1, 0.6, n.y) * step(0.40, 0.46, at.p.y);
     let outside = step(0.3, 0.8, n.x * at.p.x.signum()) * step(0.34, 0.44, at.p.y);
     1.0 - 0.8 * above.max(outside)
+}
+
+/// Raises folds where limbs bend and where cloth piles up: at elbows, knees, ankles and waist.
+fn crease(shell: &Shell<'_>, layer: &mut [Vec3], most_m: f32) {
+    // Coarse levels cannot show them.
+    if shell.lod > 1 {
+        return;
+    }
+    for ((q, n), at) in layer.iter_mut().zip(shell.normals).zip(&shell.places) {
+        *q += *n * (most_m * fold(at));
+    }
+}
+
+/// Height of the folds at a place, 0..1: waves along the limb that run aslant round it.
+fn fold(at: &Place) -> f32 {
+    const WAVE_M: f32 = 0.052;
+    let bump = |x: f32, middle: f32, half: f32| step(half, 0.0, (x - middle).abs());
+    let (along_m, share) = if at.arm > 0.05 {
+        (at.arm * ARM_M, bump(at.arm, 0.5, 0.24).max(0.7 * bump(at.arm, 0.92, 0.1)))
+    } else if at.leg > 0.1 {
+        (at.leg * LEG_M, bump(at.leg, 0.52, 0.16).max(0.8 * bump(at.leg, 0.95, 0.1)))
+    } else {
+        (-at.p.y, (0.7 * bump(at.p.y, 0.12, 0.10)).max(0.6 * bump(at.leg, 0.03, 0.1)))
+    };
+    if share <= 0.0 {
+        return 0.0;
+    }
+    let slant = 34.0 * at.p.z + 11.0 * libm::sinf(23.0 * at.p.x);
+    let wave = libm::sinf(along_m * (std::f32::consts::TAU / WAVE_M) + 0.35 * slant);
+    share * (0.5 + 0.5 * wave)
 }
 
 /// Lets a layer hang from the chest and down the arms; `share` fades it.
@@ -340,14 +376,18 @@ fn drape_top(
     }
 }
 
-/// Pieces that lie on a layer: raised along its normals by `rise`.
+/// Pieces that lie on a layer: moved along its normals and upwards, metres.
 pub(super) fn raised(
     layer: &[Vec3],
     normals: &[Vec3],
     places: &[Place],
-    rise: impl Fn(Place) -> f32,
+    rise: impl Fn(Place) -> [f32; 2],
 ) -> Vec<Vec3> {
-    layer.iter().zip(normals).zip(places).map(|((q, n), at)| *q + *n * rise(*at)).collect()
+    let raise = |((q, n), at): ((&Vec3, &Vec3), &Place)| {
+        let [off, up] = rise(*at);
+        *q + *n * off + Vec3::Y * up
+    };
+    layer.iter().zip(normals).zip(places).map(raise).collect()
 }
 
 /// Keeps the two legs' cloth on its own side of the middle.

@@ -163,6 +163,9 @@ fn rings(
     let mut tube = Tube::new((origin, Vec3::NEG_Y), Vec3::Z, (rows * 2, columns), points)?;
     tube.hang(|_| 0.15 - 0.36 * cut.flare);
     let folds = (columns / 6).min(9) as f32;
+    // Straight pieces between few columns run inside the hull, and coarse legs are rough.
+    let chord = 1.0 / libm::cosf(std::f32::consts::PI / columns as f32);
+    let ease_m = cut.ease_m + [0.0, 0.001, 0.003, 0.005, 0.009][shell.lod];
     let mut positions = Vec::with_capacity(rows * columns);
     let mut field = Vec::with_capacity(rows * columns);
     for row in 0..rows {
@@ -183,7 +186,7 @@ fn rings(
             let probe = at(middle_z + (near.z - middle_z) * (first.radius / first.own.max(0.01)));
             let spot = tube.spot(probe);
             let wave = 0.5 + 0.5 * libm::cosf(folds * turn + 1.3 * libm::sinf(2.0 * turn));
-            let more = spot.radius - spot.own + cut.ease_m + fold_m * wave;
+            let more = spot.radius * chord - spot.own + ease_m + fold_m * wave;
             let q = probe + spot.out * more;
             let front = cut.gap_m.map_or(f32::MAX, |gap| {
                 let apart = gap * (1.0 + 0.6 * share);

@@ -4,7 +4,7 @@
 //! made in [`super::person`]; textures' pixels are not known here.
 
 use super::person::PartKind;
-use crate::scene::{HairStyle, Look, Person, ShoeKind};
+use crate::scene::{BottomKind, HairStyle, Look, Person, ShoeKind, TopKind};
 
 /// Which mask texture colours a surface's layers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -66,10 +66,18 @@ pub fn surface(kind: PartKind, person: &Person) -> Surface {
         PartKind::Eyes => eye_surface(look),
         PartKind::Teeth => plain([0.78, 0.74, 0.64], 0.25),
         PartKind::Hair => hair_surface(look),
-        PartKind::Top => cloth(top.color, top.texture.as_ref(), top.hue_offset_deg),
-        PartKind::Bottom => cloth(bottom.color, bottom.texture.as_ref(), bottom.hue_offset_deg),
+        PartKind::Top => Surface {
+            relief_strength: top_relief(top.kind),
+            ..cloth(top.color, top.texture.as_ref(), top.hue_offset_deg)
+        },
+        PartKind::Bottom => Surface {
+            relief_strength: bottom_relief(bottom.kind),
+            ..cloth(bottom.color, bottom.texture.as_ref(), bottom.hue_offset_deg)
+        },
         PartKind::Outer => cloth(outer.color, outer.texture.as_ref(), outer.hue_offset_deg),
-        PartKind::Socks => cloth(outfit.shoes.sock_color, None, 0.0),
+        PartKind::Socks => {
+            Surface { relief_strength: 0.0, ..cloth(outfit.shoes.sock_color, None, 0.0) }
+        }
         PartKind::Shoes => plain(narrow(shoe), 0.45),
         PartKind::Soles if outfit.shoes.kind == ShoeKind::Sneakers => {
             plain([0.78, 0.77, 0.74], 0.8)
@@ -168,8 +176,27 @@ fn cloth(color: [f64; 3], texture: Option<&String>, hue_offset_deg: f64) -> Surf
         hue_offset_deg: hue_offset_deg as f32,
         detail: Detail::Cloth,
         detail_strength: 0.10,
-        relief_strength: 0.8,
+        relief_strength: 0.5,
         ..plain(narrow(color), 0.85)
+    }
+}
+
+/// How much a top's cloth creases.
+const fn top_relief(kind: TopKind) -> f32 {
+    match kind {
+        TopKind::Shirt => 0.8,
+        TopKind::TShirt | TopKind::Hoodie => 0.6,
+        TopKind::LongSleeve | TopKind::Sweater => 0.5,
+        TopKind::Polo | TopKind::TankTop => 0.4,
+    }
+}
+
+const fn bottom_relief(kind: BottomKind) -> f32 {
+    match kind {
+        BottomKind::Leggings => 0.1,
+        BottomKind::Trousers | BottomKind::Shorts => 0.6,
+        BottomKind::Jeans => 0.7,
+        _ => 0.4,
     }
 }
 

@@ -74,6 +74,7 @@ impl Drawing<'_> {
     fn top(&self, top: &document::Top, row: &OutfitRow) -> Top {
         let kind = self.kind(&top.kind, &row.top, keys::TOP_KIND);
         let cut = |key| self.lasting.of(key);
+        let pattern = self.here.of(keys::TOP_PATTERN);
         let [sleeve, neckline, looseness_m] = top_cut(kind);
         Top {
             kind,
@@ -81,7 +82,14 @@ impl Drawing<'_> {
             neckline: given_or(&top.neckline, &neckline, cut(keys::TOP_NECKLINE)),
             looseness_m: given_or(&top.looseness_m, &looseness_m, cut(keys::TOP_LOOSENESS)),
             color: self.dye(&top.color, &CLOTH, keys::TOP_COLOR),
-            texture: asset(&top.pattern, self.patterns, self.here.of(keys::TOP_PATTERN)),
+            texture: asset(&top.pattern, self.patterns, pattern).or_else(|| {
+                // What is not printed is knitted.
+                let knitted: Vec<_> =
+                    self.patterns.iter().filter(|id| id.contains("/knit/")).collect();
+                let at = pattern.lane(2).uniform() * knitted.len() as f64;
+                let id = knitted.get(at as usize).filter(|_| kind == TopKind::Sweater);
+                id.map(|id| (*id).clone())
+            }),
             hue_offset_deg: number(&top.hue_offset_deg, self.here.of(keys::TOP_HUE)),
         }
     }

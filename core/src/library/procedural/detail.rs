@@ -42,14 +42,15 @@ pub(super) fn skin(dice: &mut Dice) -> Painting {
 
 /// Folds of worn cloth: soft creases, some across and more aslant.
 pub(super) fn folds(dice: &mut Dice) -> Painting {
-    let bend = [Field::fbm(dice, 3, 3), Field::fbm(dice, 3, 3)];
-    let broad = Field::noise(dice, 2, 3, 2, 0.5).warped([&bend[0], &bend[1]], 60.0);
-    let across = Field::noise(dice, 2, 6, 2, 0.5).warped([&bend[1], &bend[0]], 70.0);
+    let bend = [Field::fbm(dice, 2, 2), Field::fbm(dice, 2, 2)];
+    let broad = Field::noise(dice, 2, 2, 1, 0.5).warped([&bend[0], &bend[1]], 50.0);
+    let across = Field::noise(dice, 2, 3, 1, 0.5).warped([&bend[1], &bend[0]], 60.0);
+    let places = Field::fbm(dice, 2, 2);
     let height = Field::from_fn(|x, y| {
         let i = y * SIDE + x;
-        // A crease is sharper than the cloth between creases.
-        let crease = 1.0 - (across.0[i].abs() * 2.2).min(1.0);
-        9.0 * broad.0[i] + 5.0 * crease * crease * (0.6 + bend[0].0[i])
+        // A crease is sharper than the cloth between creases, and not everywhere.
+        let crease = (1.0 - across.0[i].abs() * 1.8).max(0.0);
+        7.0 * broad.0[i] + 7.0 * crease * crease * smooth(-0.15, 0.35, places.0[i])
     });
     let grey = Field(height.0.iter().map(|h| h * 0.03).collect()).with_mean(0.5);
     let color = Canvas::from_field(&grey, |v| [v; 3]);
