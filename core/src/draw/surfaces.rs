@@ -87,7 +87,7 @@ impl Surfaces {
             normal_strength,
             detail_map,
             detail_strength: surface.detail_strength,
-            uv_repeat,
+            uv_repeat: uv_repeat.map(|n| n * surface.repeat),
             hue_offset_deg: surface.hue_offset_deg,
             roughness: surface.roughness,
             mask,

@@ -204,9 +204,9 @@ impl Cuts {
             if self.bottom.is_dress() { DRESS_Y - 0.05 } else { SKIRT_Y - 0.05 }
         } else {
             match self.top {
-                TopKind::Shirt => -0.012 - 0.02 * step(0.10, 0.0, at.p.x.abs()),
-                TopKind::Sweater | TopKind::Hoodie => 0.008,
-                _ => 0.012,
+                TopKind::Shirt => 0.002,
+                TopKind::Sweater | TopKind::Hoodie => 0.012,
+                _ => 0.016,
             }
         };
         at.p.y - y + on_arm(at)
@@ -250,7 +250,7 @@ impl Cuts {
     }
 
     fn outer(&self, at: Place) -> f32 {
-        let y = if self.outer == OuterKind::Coat { COAT_Y - 0.05 } else { -0.018 };
+        let y = if self.outer == OuterKind::Coat { COAT_Y - 0.05 } else { -0.004 };
         let hem = at.p.y - y + on_arm(at);
         hem.min((0.985 - at.arm) * ARM_M).min(self.outer_neck(at.p)).min(self.front_gap(at.p))
     }

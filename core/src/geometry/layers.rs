@@ -79,14 +79,25 @@ impl<'a> Shell<'a> {
         heights
     }
 
-    /// Moves a layer's points out to a tube where `share` says so.
-    fn spread(&self, layer: &mut [Vec3], tube: &Tube, share: impl Fn(usize, Vec3) -> f32) {
+    /// Moves a layer's points out to a tube, by a share that depends on the vertex and one that
+    /// depends on the direction as well.
+    fn spread(
+        &self,
+        layer: &mut [Vec3],
+        tube: &Tube,
+        share: impl Fn(usize) -> f32,
+        towards: impl Fn(usize, Vec3) -> f32,
+    ) {
         for (i, q) in layer.iter_mut().enumerate() {
+            let share = share(i);
+            if share <= 0.0 {
+                continue;
+            }
             let spot = tube.spot(*q);
             let facing = step(0.15, 0.6, self.normals[i].dot(spot.out));
             let more = (spot.radius - spot.own).max(0.0) * facing;
             if more > 0.0 {
-                *q += spot.out * (more * share(i, spot.out));
+                *q += spot.out * (more * share * towards(i, spot.out));
             }
         }
     }
@@ -213,7 +224,8 @@ pub(super) fn bottom(shell: &Shell<'_>, cuts: &Cuts, shoes: &[Vec3]) -> Vec<Vec3
 
 fn drape_trousers(shell: &Shell<'_>, cuts: &Cuts, layer: &mut [Vec3], falls: Falls) {
     if let Some(tube) = shell.trunk_tube(layer, (-0.10, 0.10), &[]) {
-        shell.spread(layer, &tube, |i, _| 0.8 * step(0.14, 0.02, shell.places[i].leg));
+        let hips = |i: usize| 0.8 * step(0.14, 0.02, shell.places[i].leg);
+        shell.spread(layer, &tube, hips, |_, _| 1.0);
     }
     let end = cuts.leg_end.min(0.94) + 0.04;
     for side in Side::BOTH {
@@ -224,11 +236,13 @@ fn drape_trousers(shell: &Shell<'_>, cuts: &Cuts, layer: &mut [Vec3], falls: Fal
         let sign = if side == Side::Left { 1.0 } else { -1.0 };
         // Between the thighs there is no room.
         tube.hang(|out| if out.x * sign < -0.3 { falls.limb + 0.05 } else { falls.limb });
-        shell.spread(layer, &tube, |i, out| {
+        let own = |i: usize| {
             let at = &shell.places[i];
-            let inner = step(0.0, -0.7, out.x * sign) * step(0.45, 0.25, at.leg);
-            let own = f32::from((at.p.x > 0.0) == (sign > 0.0));
-            own * step(0.08, 0.22, at.leg) * (1.0 - 0.8 * inner)
+            f32::from((at.p.x > 0.0) == (sign > 0.0)) * step(0.08, 0.22, at.leg)
+        };
+        shell.spread(layer, &tube, own, |i, out| {
+            let upper = step(0.45, 0.25, shell.places[i].leg);
+            1.0 - 0.8 * step(0.0, -0.7, out.x * sign) * upper
         });
     }
 }
@@ -251,12 +265,15 @@ pub(super) fn top(
     let loose = step(0.002, 0.016, cuts.top_m);
     let falls = Falls { trunk: 0.75 - 0.62 * loose, limb: 0.5 - 0.38 * loose };
     drape_top(shell, &mut layer, skirt, falls, |at| {
-        // Ribbed hems and cuffs lie close.
-        let cuff = if gathered || cuts.sleeve > 0.9 { 0.05 } else { 0.0 };
-        let hem = if gathered { 0.05 } else { 0.0 };
-        let edge = (cuts.sleeve - at.arm) * ARM_M;
-        let close = if at.arm > 0.1 { step(0.0, cuff, edge) } else { 1.0 };
-        close * (0.35 + 0.65 * step(0.0, hem, at.p.y - 0.01)).max(f32::from(hem == 0.0))
+        // Ribbed hems and the cuffs of long sleeves lie close.
+        let long = gathered || cuts.sleeve > 0.9;
+        if at.arm > 0.1 {
+            if long { step(0.0, 0.05, (cuts.sleeve - at.arm) * ARM_M) } else { 1.0 }
+        } else if gathered {
+            0.35 + 0.65 * step(0.0, 0.05, at.p.y - 0.01)
+        } else {
+            1.0
+        }
     });
     shell.settle(&mut layer, shell.positions, 2, |i| {
         let over = bottom.filter(|_| cuts.field(Piece::Bottom, shell.places[i]) > -0.03);
@@ -351,15 +368,15 @@ fn drape_top(
     falls: Falls,
     share: impl Fn(&Place) -> f32,
 ) {
-    let skirt: Vec<Vec3> = skirt.iter().copied().collect();
-    if let Some(mut tube) = shell.trunk_tube(layer, (-0.05, 0.44), &skirt) {
+    if let Some(mut tube) = shell.trunk_tube(layer, (-0.05, 0.44), skirt) {
         // Arms hang where the cloth at the sides would.
         tube.hang(|out| falls.trunk + 0.25 * out.x * out.x);
-        shell.spread(layer, &tube, |i, _| {
+        let on_trunk = |i: usize| {
             let at = &shell.places[i];
             let trunk = step(0.45, 0.36, at.p.y) * step(0.05, 0.0, at.arm);
             trunk * step(0.16, 0.04, at.leg) * share(at)
-        });
+        };
+        shell.spread(layer, &tube, on_trunk, |_, _| 1.0);
     }
     for side in Side::BOTH {
         let on_arm = |at: &Place| at.arm > 0.20;
@@ -368,11 +385,11 @@ fn drape_top(
         };
         tube.hang(|_| falls.limb);
         let left = side == Side::Left;
-        shell.spread(layer, &tube, |i, _| {
+        let own = |i: usize| {
             let at = &shell.places[i];
-            let own = f32::from((at.p.x > 0.0) == left);
-            own * step(0.20, 0.36, at.arm) * share(at)
-        });
+            f32::from((at.p.x > 0.0) == left) * step(0.20, 0.36, at.arm) * share(at)
+        };
+        shell.spread(layer, &tube, own, |_, _| 1.0);
     }
 }
 

@@ -16,6 +16,10 @@ use crate::library::mesh::SkinVertex;
 /// Rows and columns by level of detail.
 const GRID: [(usize, usize); 5] = [(16, 60), (11, 44), (7, 28), (5, 18), (3, 12)];
 
+/// Share of the way between the legs in which the cloth goes over from one to the other: less
+/// than all of it, since a leg that is ahead bulges inwards of its middle.
+const BETWEEN: f32 = 0.45;
+
 /// What a skirt is like.
 pub(super) struct Cut {
     /// Upper edge, on the template.
@@ -215,7 +219,7 @@ fn weights(shell: &Shell<'_>, positions: &[Vec3], columns: usize) -> Vec<SkinVer
         let t = ((hip.y - y) / (hip.y - ankle.y)).clamp(0.0, 1.0);
         let leg_x = (hip.x + (ankle.x - hip.x) * t).abs().max(0.02);
         for q in ring {
-            let left = 0.5 + 0.5 * (q.x / leg_x).clamp(-1.0, 1.0);
+            let left = 0.5 + 0.5 * (q.x / (BETWEEN * leg_x)).clamp(-1.0, 1.0);
             let mut sum = [0.0f32; JOINT_COUNT];
             for (side, share) in [(1.0f32, left), (-1.0, 1.0 - left)] {
                 let own = |i: &&usize| shell.positions[**i].x * side > -0.002;

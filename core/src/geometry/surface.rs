@@ -47,6 +47,8 @@ pub struct Surface {
     pub texture: Option<String>,
     /// Rotation of the hue.
     pub hue_offset_deg: f32,
+    /// Repeats of the pattern and the relief, against those of other cloths.
+    pub repeat: f32,
     /// Fine structure.
     pub detail: Detail,
     /// Its strength.
@@ -107,6 +109,7 @@ fn plain(base_color: [f32; 3], roughness: f32) -> Surface {
         layers: [[0.0; 4]; 4],
         texture: None,
         hue_offset_deg: 0.0,
+        repeat: 1.0,
         detail: Detail::None,
         detail_strength: 0.0,
         relief_strength: 0.0,
@@ -172,6 +175,8 @@ fn hair_surface(look: &Look) -> Surface {
 
 fn cloth(color: [f64; 3], texture: Option<&String>, hue_offset_deg: f64) -> Surface {
     Surface {
+        // The stitches of knitwear are painted large.
+        repeat: if texture.is_some_and(|id| id.contains("/knit/")) { 2.0 } else { 1.0 },
         texture: texture.cloned(),
         hue_offset_deg: hue_offset_deg as f32,
         detail: Detail::Cloth,
