@@ -21,6 +21,9 @@ const POCKET_M: f32 = 0.006;
 /// Thickness of a hood that lies on the back.
 const HOOD_M: f32 = 0.034;
 
+/// How far a piece stands off its cloth, and how far it is moved upwards, metres.
+type Rise<'a> = &'a dyn Fn(Place) -> [f32; 2];
+
 /// Everything that is worn, as surfaces.
 pub(super) struct Worn {
     pub bottom: Option<Vec<Vec3>>,
@@ -138,7 +141,7 @@ fn add_top(out: &mut Parts, cutter: &Cutter<'_>, worn: &Worn) {
     }
     if cutter.lod < 4 {
         let normals = layers::normals_of(shell, &worn.top);
-        let sewn: [(Piece, &dyn Fn(Place) -> [f32; 2]); 4] = [
+        let sewn: [(Piece, Rise<'_>); 4] = [
             (Piece::Placket, &|_| [SEWN_M, 0.0]),
             (Piece::Pocket, &|at| {
                 [POCKET_M * step(-0.01, 0.02, cuts.field(Piece::Pocket, at)), 0.0]

@@ -216,7 +216,7 @@ mod tests {
     fn two_legs() -> Vec<Vec3> {
         let ring = |i: i32| {
             let a = std::f32::consts::TAU * i as f32 / 32.0;
-            Vec3::new(0.05 * a.cos(), 0.0, 0.05 * a.sin())
+            Vec3::new(0.05 * libm::cosf(a), 0.0, 0.05 * libm::sinf(a))
         };
         let rows = (0..=20).map(|r| Vec3::Y * (r as f32 / 20.0));
         let all =
