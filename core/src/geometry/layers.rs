@@ -213,7 +213,7 @@ pub(super) fn bottom(shell: &Shell<'_>, cuts: &Cuts, shoes: &[Vec3]) -> Vec<Vec3
         let at = &shell.places[i];
         let over_shoe = step(-0.02, -0.005, cuts.field(Piece::Shoes, *at)) * f32::from(rests);
         let shoe = (shoes[i] - shell.positions[i]).dot(shell.normals[i]) + LAYER_M;
-        (0.6 * heights[i]).max(0.002).max(over_shoe * shoe)
+        (0.85 * heights[i]).max(0.0022).max(over_shoe * shoe)
     });
     if !tight {
         crease(shell, &mut layer, 0.0012 + 0.25 * cuts.bottom_m);
@@ -279,7 +279,7 @@ pub(super) fn top(
         let over = bottom.filter(|_| cuts.field(Piece::Bottom, shell.places[i]) > -0.03);
         let trousers =
             over.map_or(0.0, |b| (b[i] - shell.positions[i]).dot(shell.normals[i]) + LAYER_M);
-        (0.5 * heights[i]).max(0.0025).max(trousers)
+        (0.85 * heights[i]).max(0.003).max(trousers)
     });
     crease(shell, &mut layer, 0.0010 + 0.22 * cuts.top_m);
     part_legs(&shell.places, &mut layer);
