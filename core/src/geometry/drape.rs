@@ -236,7 +236,7 @@ mod tests {
         for p in &points {
             let s = tube.spot(*p);
             // Between two columns the cloth is a straight piece of a round thing.
-            assert!(s.own <= s.radius + 1e-3, "{p}");
+            assert!(s.own <= s.radius + 2e-3, "{p}");
         }
         let front = tube.spot(Vec3::new(0.0, 0.5, 0.02));
         assert!((front.radius - 0.05).abs() < 0.003 && front.out.z > 0.99);

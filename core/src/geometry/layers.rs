@@ -325,7 +325,8 @@ pub(super) fn outer(
 /// Share of its looseness by which cloth stands off: it rests on the shoulders and on what is
 /// outermost of the upper arms.
 fn off_shoulders(at: &Place, n: Vec3) -> f32 {
-    let above = step(0.1, 0.6, n.y) * step(0.40, 0.46, at.p.y);
+    let beside = step(0.04, 0.08, at.p.x.abs());
+    let above = step(0.1, 0.6, n.y) * step(0.40, 0.46, at.p.y) * beside;
     let outside = step(0.3, 0.8, n.x * at.p.x.signum()) * step(0.34, 0.44, at.p.y);
     1.0 - 0.8 * above.max(outside)
 }

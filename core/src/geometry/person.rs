@@ -545,7 +545,7 @@ mod tests {
         let figure = Figure::built_in().unwrap();
         let mut skirts = 0;
         for (i, lod) in (0..16).flat_map(|i| [0, 2, 4].map(|lod| (i, lod))) {
-            with_clothes(&figure, i, lod, |body, shell, worn, _, _| {
+            with_clothes(&figure, i, lod, |body, shell, worn, cuts, _| {
                 let Some(skirt) = &worn.skirt else { return };
                 skirts += 1;
                 let triangles = skirt.triangles();
@@ -554,7 +554,7 @@ mod tests {
                 let inside = low + 0.06..high - 0.08;
                 for (v, p) in body.positions.iter().enumerate() {
                     let at = shell.places[v];
-                    if at.arm > 0.0 || !inside.contains(&p.y) {
+                    if at.arm > 0.0 || at.leg > cuts.leg_end - 0.1 || !inside.contains(&p.y) {
                         continue;
                     }
                     let out = Vec3::new(p.x, 0.0, p.z - shell.heads_m[0].z as f32);
