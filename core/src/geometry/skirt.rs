@@ -190,7 +190,11 @@ fn rings(
             let probe = at(middle_z + (near.z - middle_z) * (first.radius / first.own.max(0.01)));
             let spot = tube.spot(probe);
             let wave = 0.5 + 0.5 * libm::cosf(folds * turn + 1.3 * libm::sinf(2.0 * turn));
-            let more = spot.radius * chord - spot.own + ease_m + fold_m * wave;
+            // Between rings the cloth is straight, and hips are round.
+            let half = Vec3::Y * (0.5 * reach / (rows as f32 - 1.6));
+            let radius = tube.spot(probe + half).radius.max(tube.spot(probe - half).radius);
+            let radius = radius.max(spot.radius);
+            let more = radius * chord - spot.own + ease_m + fold_m * wave;
             let q = probe + spot.out * more;
             let front = cut.gap_m.map_or(f32::MAX, |gap| {
                 let apart = gap * (1.0 + 0.6 * share);
