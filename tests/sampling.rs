@@ -1,12 +1,14 @@
 //! Document to scene: what seeds, frames and switches mean across all sections.
 
-use figurant_core::document::{Choice, Document, Param, Problem, file, presets};
+use figurant_core::document::{
+    Auto, Choice, Document, OutfitRow, Param, Problem, Season, file, presets,
+};
 use figurant_core::library::pose::Poses;
 use figurant_core::library::textures::{TextureGroup, TextureLibrary};
 use figurant_core::sampling::{
     Activity, Catalogue, Counts, SampleError, Sampler, check_assets, counts,
 };
-use figurant_core::scene::{Role, Scene, Sex};
+use figurant_core::scene::{BottomKind, OuterKind, Person, Role, Scene, Sex, ShoeKind, TopKind};
 use serde_json::Value;
 
 fn activity(id: &str, activity: &str) -> Activity {
@@ -177,7 +179,7 @@ fn a_switch_changes_nothing_else() {
         (|d| d.background.floor.enabled = true, &["objects/floor"]),
         (|d| d.occluders.enabled = false, &["objects/occluder"]),
         (|d| d.people.enabled = false, &["people"]),
-        // Automatic looks follow the body; the shape of the face does not.
+        // Automatic looks and clothes follow the body; the shape of the face does not.
         (
             |d| d.people.body.enabled = false,
             &[
@@ -186,6 +188,7 @@ fn a_switch_changes_nothing_else() {
                 "people/*/look/hair_color",
                 "people/*/look/iris_color",
                 "people/*/look/hair",
+                "people/*/outfit",
             ],
         ),
         (|d| d.people.look.enabled = false, &["people/*/look"]),
@@ -239,7 +242,13 @@ fn scenes_hold_only_what_makes_sense() {
                 assert!((0.6..2.1).contains(&body.stature_m), "{body:?}");
                 assert!((body.ancestry.iter().sum::<f64>() - 1.0).abs() < 1e-9);
                 let colors = [look.skin_color, look.hair_color, look.iris_color];
-                let cloth = [outfit.top.color, outfit.bottom.color, outfit.shoes.color];
+                let cloth = [
+                    outfit.top.color,
+                    outfit.bottom.color,
+                    outfit.outer.color,
+                    outfit.shoes.color,
+                    outfit.shoes.sock_color,
+                ];
                 for channel in colors.into_iter().chain(cloth).flatten() {
                     assert!((0.0..=1.0).contains(&channel));
                 }
@@ -471,4 +480,70 @@ fn hands_of_clips_are_mostly_relaxed_and_poses_keep_theirs() {
     let hands: Vec<HandShape> = people.iter().filter_map(|p| p.pose.hands).flatten().collect();
     let relaxed = hands.iter().filter(|h| **h == HandShape::Relaxed).count();
     assert!(relaxed * 10 > hands.len() * 7 && relaxed < hands.len(), "{relaxed} {}", hands.len());
+}
+
+/// Everybody of some frames of the line-up, after a change to what they wear.
+fn dressed(change: impl FnOnce(&mut Document)) -> Vec<Person> {
+    let mut document = preset("lineup");
+    change(&mut document);
+    (0..60).flat_map(|frame| scene(&document, frame).people).collect()
+}
+
+#[test]
+fn people_dress_for_season_and_sex() {
+    let summer = dressed(|d| d.people.wardrobe.season = Choice::Always(Season::Summer));
+    assert!(summer.iter().all(|p| p.outfit.outer.kind == OuterKind::None));
+    let bare = |p: &&Person| p.outfit.bottom.kind == BottomKind::Shorts;
+    assert!(summer.iter().filter(bare).count() > summer.len() / 5);
+    let winter = dressed(|d| d.people.wardrobe.season = Choice::Always(Season::Winter));
+    assert!(winter.iter().filter(bare).count() == 0);
+    let coats = winter.iter().filter(|p| p.outfit.outer.kind != OuterKind::None).count();
+    assert!(coats > winter.len() / 2);
+    for p in summer.iter().chain(&winter) {
+        let skirt = p.outfit.bottom.kind.is_skirt();
+        assert!(!skirt || p.body.sex == Sex::Female, "{:?}", p.outfit);
+        assert!(p.outfit.top.kind != TopKind::TankTop || p.outfit.top.sleeve == 0.0);
+    }
+}
+
+#[test]
+fn a_document_brings_its_own_outfits() {
+    let row = |text: &str| serde_json::from_str::<OutfitRow>(text).unwrap();
+    let table = vec![
+        row(r#"{"sex": "male", "top": "shirt", "bottom": "jeans", "shoes": "boots"}"#),
+        row(r#"{"sex": "female", "age_years": [0, 30], "top": "tank_top", "bottom": "leggings"}"#),
+        row(r#"{"weight": 0, "sex": "female", "top": "hoodie", "bottom": "shorts"}"#),
+    ];
+    let people = dressed(|d| {
+        d.people.wardrobe.outfit = Auto::Given(table);
+        d.people.wardrobe.shoes.kind = Auto::Given(Choice::Always(ShoeKind::Sandals));
+    });
+    for p in people {
+        let outfit = (p.outfit.top.kind, p.outfit.bottom.kind);
+        let [man, woman] =
+            [(TopKind::Shirt, BottomKind::Jeans), (TopKind::TankTop, BottomKind::Leggings)];
+        match p.body.sex {
+            Sex::Male => assert_eq!(outfit, man),
+            Sex::Female if p.body.age_years <= 30.0 => assert_eq!(outfit, woman),
+            // No row is for her: she wears any that somebody wears.
+            Sex::Female => assert!(outfit == man || outfit == woman),
+        }
+        assert_eq!(p.outfit.shoes.kind, ShoeKind::Sandals, "what is given alone comes first");
+        assert_eq!(p.outfit.outer.kind, OuterKind::None);
+    }
+}
+
+#[test]
+fn outfits_that_make_no_sense_are_refused() {
+    let problem = |rows: &str| {
+        let mut document = preset("lineup");
+        document.people.wardrobe.outfit = Auto::Given(serde_json::from_str(rows).unwrap());
+        sample(&document, &catalogue(), 0).expect_err("it must be refused").to_string()
+    };
+    let none = problem("[]");
+    assert!(none.contains("people.wardrobe.outfit"), "{none}");
+    let weights = problem(r#"[{"weight": -1, "top": "shirt", "bottom": "jeans"}]"#);
+    assert!(weights.contains("people.wardrobe.outfit[0]"), "{weights}");
+    let ages = problem(r#"[{"age_years": [9, 3], "top": "shirt", "bottom": "jeans"}]"#);
+    assert!(ages.contains("people.wardrobe.outfit[0].age_years"), "{ages}");
 }

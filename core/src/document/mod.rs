@@ -24,6 +24,7 @@ mod place;
 pub mod presets;
 mod validate;
 mod vector;
+mod wardrobe;
 
 pub use camera::{Camera, Image};
 pub use face::{Expression, ExpressionKind};
@@ -35,7 +36,7 @@ pub use param::{
     Auto, AutoWord, Beta, Binomial, Chance, Choice, Distribution, Flag, Lognormal, Normal, Param,
     Triangular, Weighted,
 };
-pub use people::{Ancestry, Blend, Body, Bottom, Look, Origin, People, Pose, Shoes, Top, Wardrobe};
+pub use people::{Ancestry, Blend, Body, Look, Origin, People, Pose};
 pub use place::{
     Background, Floor, Grid, GridPlane, Ground, Materials, Occluders, Placement, PoissonDisk, Row,
     Wall,
@@ -45,6 +46,7 @@ pub use vector::{
     BoxRegion, Color, ColorLaw, GridRegion, JointRotation, Region, Rotation, RotationLaw, Round,
     Vector,
 };
+pub use wardrobe::{Bottom, Outer, OutfitRow, Season, Shoes, Top, Wardrobe};
 
 /// Words of the config that other layers share.
 pub use crate::scene::HandShape;

@@ -5,8 +5,8 @@ use serde::{Deserialize, Serialize};
 
 use super::face::Expression;
 use super::place::PoissonDisk;
-use super::{Auto, Choice, Color, ColorLaw, Flag, Param, Placement, Rotation};
-use crate::scene::{BeardStyle, BottomKind, Glasses, HairStyle, HandShape, HeadwearKind, Sex};
+use super::{Auto, Choice, Color, Flag, Param, Placement, Rotation, Wardrobe};
+use crate::scene::{BeardStyle, Glasses, HairStyle, HandShape, HeadwearKind, Sex};
 
 /// Everybody in the picture.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -182,144 +182,6 @@ impl Default for Look {
             expression: Expression::default(),
         }
     }
-}
-
-/// Clothes.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(default, deny_unknown_fields)]
-pub struct Wardrobe {
-    /// Where false, every parameter takes its median.
-    pub enabled: bool,
-    /// Upper body.
-    pub top: Top,
-    /// Legs.
-    pub bottom: Bottom,
-    /// Feet.
-    pub shoes: Shoes,
-}
-
-impl Default for Wardrobe {
-    fn default() -> Self {
-        Self {
-            enabled: true,
-            top: Top::default(),
-            bottom: Bottom::default(),
-            shoes: Shoes::default(),
-        }
-    }
-}
-
-/// Garment of the upper body.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(default, deny_unknown_fields)]
-pub struct Top {
-    /// End of the sleeve along the arm: 0 shoulder .. 1 wrist.
-    pub sleeve: Param,
-    /// How deep the neckline is cut: 0 at the neck .. 1 deep.
-    pub neckline: Param,
-    /// Gap between skin and cloth.
-    pub looseness_m: Param,
-    /// Colour of the cloth.
-    pub color: Color,
-    /// Cloth pattern id; `"any"` for one of all, `"none"` for plain.
-    pub pattern: Choice<String>,
-    /// Rotation of the hue.
-    pub hue_offset_deg: Param,
-}
-
-impl Default for Top {
-    fn default() -> Self {
-        Self {
-            sleeve: Param::mix([
-                (0.15, Param::uniform(0.08, 0.18)),
-                (0.45, Param::uniform(0.25, 0.42)),
-                (0.4, Param::uniform(0.85, 1.0)),
-            ]),
-            neckline: Param::uniform(0.05, 0.6),
-            looseness_m: Param::uniform(0.004, 0.014),
-            color: cloth_color(),
-            pattern: some_pattern(0.4),
-            hue_offset_deg: Param::uniform(0.0, 360.0),
-        }
-    }
-}
-
-/// Garment of the legs.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(default, deny_unknown_fields)]
-pub struct Bottom {
-    /// Which.
-    pub kind: Choice<BottomKind>,
-    /// End of trousers along the leg: 0 hip .. 1 ankle.
-    pub trousers_length: Param,
-    /// End of shorts along the leg.
-    pub shorts_length: Param,
-    /// Gap between skin and cloth.
-    pub looseness_m: Param,
-    /// Colour of the cloth.
-    pub color: Color,
-    /// Cloth pattern id; `"any"` for one of all, `"none"` for plain.
-    pub pattern: Choice<String>,
-    /// Rotation of the hue.
-    pub hue_offset_deg: Param,
-}
-
-impl Default for Bottom {
-    fn default() -> Self {
-        Self {
-            kind: Choice::of([(BottomKind::Trousers, 0.75), (BottomKind::Shorts, 0.25)]),
-            trousers_length: Param::uniform(0.9, 1.0),
-            shorts_length: Param::uniform(0.28, 0.52),
-            looseness_m: Param::uniform(0.004, 0.012),
-            color: cloth_color(),
-            pattern: some_pattern(0.2),
-            hue_offset_deg: Param::uniform(0.0, 360.0),
-        }
-    }
-}
-
-/// Shoes.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(default, deny_unknown_fields)]
-pub struct Shoes {
-    /// Colour.
-    pub color: Color,
-}
-
-impl Default for Shoes {
-    fn default() -> Self {
-        let colors = vec![
-            ([0.04, 0.04, 0.04], 3.0),
-            ([0.12, 0.12, 0.11], 2.0),
-            ([0.35, 0.34, 0.33], 1.0),
-            ([0.75, 0.74, 0.71], 1.0),
-            ([0.92, 0.9, 0.87], 2.0),
-            ([0.33, 0.21, 0.13], 1.5),
-            ([0.12, 0.18, 0.36], 1.0),
-            ([0.6, 0.12, 0.12], 0.5),
-        ];
-        Self { color: Color::Other(ColorLaw::Palette(colors)) }
-    }
-}
-
-/// What people wear: mostly darks and neutrals, denim, muted tones and the odd strong colour.
-fn cloth_color() -> Color {
-    let hsv = |h: [f64; 2], s: [f64; 2], v: [f64; 2]| {
-        let range = |r: [f64; 2]| Param::uniform(r[0], r[1]);
-        Color::Other(ColorLaw::Hsv([range(h), range(s), range(v)]))
-    };
-    Color::Other(ColorLaw::Mix(vec![
-        (0.22, hsv([0.0, 360.0], [0.0, 0.25], [0.06, 0.25])),
-        (0.18, hsv([20.0, 60.0], [0.0, 0.15], [0.35, 0.92])),
-        (0.16, hsv([208.0, 228.0], [0.35, 0.7], [0.2, 0.5])),
-        (0.14, hsv([20.0, 50.0], [0.2, 0.5], [0.25, 0.7])),
-        (0.22, hsv([0.0, 360.0], [0.2, 0.55], [0.35, 0.8])),
-        (0.08, hsv([0.0, 360.0], [0.6, 0.85], [0.5, 0.85])),
-    ]))
-}
-
-fn some_pattern(share: f64) -> Choice<String> {
-    Choice::of([("none".to_owned(), 1.0 - share), ("any".to_owned(), share)])
 }
 
 /// What people do: frames of motion clips, and poses.

@@ -8,8 +8,8 @@ use rules::{Check, Range};
 
 use super::{
     Ancestry, Auto, Background, Body, Camera, Document, Environment, Image, Labels, Lights, Look,
-    MovingLight, Occluders, Output, Param, People, Placement, PointLight, Pose, Post, Problem,
-    Quality, Scheme, Sun, SunDirection, VERSION, Wardrobe,
+    MovingLight, Occluders, OutfitRow, Output, Param, People, Placement, PointLight, Pose, Post,
+    Problem, Quality, Scheme, Sun, SunDirection, VERSION, Wardrobe,
 };
 
 /// People in a frame at most.
@@ -335,22 +335,65 @@ fn look(c: &mut Check, look: &Look) {
 }
 
 fn wardrobe(c: &mut Check, wardrobe: &Wardrobe) {
+    c.choice("people.wardrobe.season", &wardrobe.season);
+    if let Auto::Given(rows) = &wardrobe.outfit {
+        outfit_rows(c, rows);
+    }
     let loose = Range::from_to(0.0, 0.1);
-    let (top, bottom) = (&wardrobe.top, &wardrobe.bottom);
-    c.param("people.wardrobe.top.sleeve", &top.sleeve, SHARE);
-    c.param("people.wardrobe.top.neckline", &top.neckline, SHARE);
-    c.param("people.wardrobe.top.looseness_m", &top.looseness_m, loose);
-    c.color("people.wardrobe.top.color", &top.color);
-    c.ids("people.wardrobe.top.pattern", &top.pattern);
-    c.param("people.wardrobe.top.hue_offset_deg", &top.hue_offset_deg, ANGLE);
-    c.choice("people.wardrobe.bottom.kind", &bottom.kind);
+    let (top, bottom, outer) = (&wardrobe.top, &wardrobe.bottom, &wardrobe.outer);
+    let shoes = &wardrobe.shoes;
+    given(&top.kind, |kind| c.choice("people.wardrobe.top.kind", kind));
+    given(&bottom.kind, |kind| c.choice("people.wardrobe.bottom.kind", kind));
+    given(&outer.kind, |kind| c.choice("people.wardrobe.outer.kind", kind));
+    given(&shoes.kind, |kind| c.choice("people.wardrobe.shoes.kind", kind));
+    let params = [
+        ("people.wardrobe.top.sleeve", &top.sleeve, SHARE),
+        ("people.wardrobe.top.neckline", &top.neckline, SHARE),
+        ("people.wardrobe.top.looseness_m", &top.looseness_m, loose),
+        ("people.wardrobe.bottom.skirt_length", &bottom.skirt_length, SHARE),
+        ("people.wardrobe.bottom.looseness_m", &bottom.looseness_m, loose),
+        ("people.wardrobe.outer.looseness_m", &outer.looseness_m, loose),
+    ];
+    for (path, param, range) in params {
+        given(param, |param| c.param(path, param, range));
+    }
+    let cloths = [
+        ("top", &top.color, &top.pattern, &top.hue_offset_deg),
+        ("bottom", &bottom.color, &bottom.pattern, &bottom.hue_offset_deg),
+        ("outer", &outer.color, &outer.pattern, &outer.hue_offset_deg),
+    ];
+    for (name, color, pattern, hue_offset_deg) in cloths {
+        let at = |field: &str| format!("people.wardrobe.{name}.{field}");
+        given(color, |color| c.color(&at("color"), color));
+        c.ids(&at("pattern"), pattern);
+        c.param(&at("hue_offset_deg"), hue_offset_deg, ANGLE);
+    }
     c.param("people.wardrobe.bottom.trousers_length", &bottom.trousers_length, SHARE);
     c.param("people.wardrobe.bottom.shorts_length", &bottom.shorts_length, SHARE);
-    c.param("people.wardrobe.bottom.looseness_m", &bottom.looseness_m, loose);
-    c.color("people.wardrobe.bottom.color", &bottom.color);
-    c.ids("people.wardrobe.bottom.pattern", &bottom.pattern);
-    c.param("people.wardrobe.bottom.hue_offset_deg", &bottom.hue_offset_deg, ANGLE);
-    c.color("people.wardrobe.shoes.color", &wardrobe.shoes.color);
+    c.param("people.wardrobe.bottom.flare", &bottom.flare, SHARE);
+    c.flag("people.wardrobe.outer.open", &outer.open);
+    c.color("people.wardrobe.shoes.color", &shoes.color);
+    c.param("people.wardrobe.shoes.socks", &shoes.socks, SHARE);
+    c.color("people.wardrobe.shoes.sock_color", &shoes.sock_color);
+}
+
+/// Checks what is given in place of `"auto"`.
+fn given<T>(auto: &Auto<T>, check: impl FnOnce(&T) -> bool) {
+    if let Auto::Given(value) = auto {
+        check(value);
+    }
+}
+
+fn outfit_rows(c: &mut Check, rows: &[OutfitRow]) {
+    c.weights("people.wardrobe.outfit", rows.iter().map(|row| row.weight));
+    for (i, row) in rows.iter().enumerate() {
+        let at = |field: &str| format!("people.wardrobe.outfit[{i}].{field}");
+        c.interval(&at("age_years"), row.age_years, Range::from_to(0.0, 200.0));
+        c.choice(&at("top"), &row.top);
+        c.choice(&at("bottom"), &row.bottom);
+        c.choice(&at("outer"), &row.outer);
+        c.choice(&at("shoes"), &row.shoes);
+    }
 }
 
 fn post(c: &mut Check, post: &Post) {

@@ -10,7 +10,7 @@ use crate::geometry::body::{RestBody, rest_body};
 use crate::geometry::person::{Dressed, MeshKey, dress};
 use crate::library::figure::{Figure, FigureError};
 use crate::library::mesh::Mesh;
-use crate::scene::Person;
+use crate::scene::{Person, ShoeKind};
 
 /// About 300 people at two levels of detail each.
 const MESHES_BYTES: usize = 256 << 20;
@@ -38,7 +38,11 @@ impl Cast {
         key: MeshKey,
         person: &Person,
     ) -> Result<Arc<RestBody>, FigureError> {
-        let make = || rest_body(figure, &person.body, &person.look.face);
+        let make = || {
+            let body = rest_body(figure, &person.body, &person.look.face)?;
+            let bare = person.outfit.shoes.kind == ShoeKind::Barefoot;
+            Ok(if bare { body.barefoot() } else { body })
+        };
         self.bodies.get_or_make(&key, RestBody::size_bytes, make)
     }
 

@@ -20,13 +20,18 @@ use crate::geometry::surface::surface;
 use crate::library::Library;
 use crate::library::figure::LOD_COUNT;
 use crate::library::pose::PREFIX;
-use crate::scene::{Person, Pose, PoseBlend};
+use crate::scene::{OuterKind, Outfit, Person, Pose, PoseBlend};
 
 /// How much of a limb's thickness may lie in front of a keypoint before it counts as hidden: limbs
 /// are seen at a slant, and clothes stand off.
 const LIMB_SLACK: f64 = 1.6;
 /// Cloth and hair in front of the skin, metres at scale 1.
 const COVER_M: f64 = 0.025;
+/// A skirt's or a coat's cloth in front of hips and knees, likewise.
+const SKIRT_M: f64 = 0.08;
+
+/// Folds of cloth are drawn where a metre spans more pixels than this: about five to a fold.
+const RELIEF_PX_PER_M: f64 = 100.0;
 
 /// A person whose bones are settled.
 struct Posed<'a> {
@@ -87,6 +92,7 @@ fn pose_one<'a>(
     let view_from_model = *view_from_world * world_from_model(&person.placement);
     let scale = person.placement.scale.abs().max_element();
     let (center, radius_m) = bounds(&skeleton, &body);
+    let radius_m = radius_m + skirt_reach_m(&person.outfit);
     Ok(Posed {
         center_in_view: view_from_model.transform_point3(center),
         radius_m: radius_m * scale,
@@ -129,6 +135,13 @@ fn skeleton(
     Ok((PosedSkeleton::of_stance(heads_m, &all), all.rests))
 }
 
+/// How much farther than other clothes a skirt's hem may stand off the leg.
+fn skirt_reach_m(outfit: &Outfit) -> f64 {
+    let skirt = if outfit.bottom.kind.is_skirt() { 0.08 + 0.35 * outfit.bottom.flare } else { 0.0 };
+    let coat = if outfit.outer.kind == OuterKind::Coat { 0.15 } else { 0.0 };
+    skirt + coat
+}
+
 /// Centre and radius of a sphere round the posed, dressed body, model space.
 fn bounds(skeleton: &PosedSkeleton, body: &RestBody) -> (DVec3, f64) {
     let joints: [DVec3; JOINT_COUNT] =
@@ -165,12 +178,14 @@ fn add_mesh(
     relevance: Relevance,
     dressed: &Dressed,
 ) -> Result<u32, DrawError> {
+    let px_per_m = drawing.px_per_m(posed.center_in_view, posed.radius_m) * posed.scale;
+    let near = px_per_m > RELIEF_PX_PER_M;
     let list = &mut drawing.drawn.list;
     let index = list.objects.len() as u32;
     for part in &dressed.parts {
         let material = if drawing.options.shading && relevance.in_view {
             let surface = surface(part.kind, posed.person);
-            drawing.surfaces.of_person(&surface, drawing.library, list)?
+            drawing.surfaces.of_person(&surface, near, drawing.library, list)?
         } else {
             drawing.surfaces.plain(list)
         };
@@ -204,13 +219,16 @@ fn describe(index: usize, posed: &Posed, object: Option<u32>) -> DrawnPerson {
             points::pose_point(bones, vertices.map(|(p, &weight)| (p.rest_m, p.skin, weight)));
         posed.view_from_model.transform_point3(p_in_model)
     };
+    // Skirts stand off the legs that they show the form of.
+    let legs_m = if skirt_reach_m(&posed.person.outfit) > 0.0 { SKIRT_M } else { 0.0 };
+    let cover_m = |k: usize| COVER_M + if (11..=14).contains(&k) { legs_m } else { 0.0 };
     DrawnPerson {
         person: index,
         instance: posed.person.slot as u16 + 1,
         object,
         keypoints_in_view: std::array::from_fn(in_view),
         keypoint_tolerance_m: std::array::from_fn(|k| {
-            (regressors[k].radius_m * LIMB_SLACK + COVER_M) * posed.scale
+            (regressors[k].radius_m * LIMB_SLACK + cover_m(k)) * posed.scale
         }),
         mass_kg: posed.body.mass_kg,
     }

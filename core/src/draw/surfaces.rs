@@ -9,6 +9,11 @@ use crate::library::Library;
 use crate::library::texture::Texture;
 use crate::scene;
 
+/// Normals of folded cloth.
+const FOLDS: &str = "normal/detail/folds";
+/// Strength of the relief of cloth that has its own, knitwear and leather.
+const WEAVE_STRENGTH: f32 = 0.8;
+
 /// What has been put into a draw list so far.
 #[derive(Default)]
 pub struct Surfaces {
@@ -48,10 +53,11 @@ impl Surfaces {
         Ok(push(list, made))
     }
 
-    /// The surface of a part of a person.
+    /// The surface of a part of a person; `near` where its relief can be made out.
     pub fn of_person(
         &mut self,
         surface: &Surface,
+        near: bool,
         library: &Library,
         list: &mut DrawList,
     ) -> Result<u32, DrawError> {
@@ -69,12 +75,21 @@ impl Surfaces {
                 Some(self.shared("figure/eye_mask", list, || Arc::clone(library.figure.eye_mask())))
             }
         };
+        let own = surface.texture.as_deref().and_then(|id| library.textures.normal_map(id));
+        let (relief, normal_strength) = match &own {
+            Some(id) => (id.as_str(), WEAVE_STRENGTH),
+            None => (FOLDS, surface.relief_strength),
+        };
+        let shows = near && surface.relief_strength > 0.0;
+        let normal_map = self.optional(shows.then_some(relief), library, list)?;
         let made = abi::Material {
             base_color: surface.base_color,
             albedo_map,
+            normal_map,
+            normal_strength,
             detail_map,
             detail_strength: surface.detail_strength,
-            uv_repeat,
+            uv_repeat: uv_repeat.map(|n| n * surface.repeat),
             hue_offset_deg: surface.hue_offset_deg,
             roughness: surface.roughness,
             mask,

@@ -81,6 +81,21 @@ impl RestBody {
     }
 }
 
+impl RestBody {
+    /// The same body without shoes: it stands lower by the thickness of their soles.
+    #[must_use]
+    pub fn barefoot(mut self) -> Self {
+        let down = f64::from(SOLE_M);
+        self.shape.lift_m -= SOLE_M;
+        let joints = self.heads_m.iter_mut().chain(&mut self.tails_m);
+        let points = self.keypoints.iter_mut().flat_map(|k| &mut k.points).map(|p| &mut p.rest_m);
+        joints.chain(points).for_each(|p| p.y -= down);
+        // Points of the soles already stand on the ground.
+        self.ground.iter_mut().for_each(|p| p.rest_m.y = (p.rest_m.y - down).max(0.0));
+        self
+    }
+}
+
 /// Evaluates a body with its face targets.
 ///
 /// # Errors
@@ -250,6 +265,20 @@ mod tests {
             assert!((f64::from(top - low) - body.stature_m).abs() < 5e-4, "{body:?} {}", top - low);
             assert!((low - SOLE_M).abs() < 1e-5);
         }
+    }
+
+    #[test]
+    fn without_shoes_the_feet_stand_on_the_ground() {
+        let figure = Figure::built_in().unwrap();
+        let rest = rest_body(&figure, &bodies()[6], &[]).unwrap();
+        let bare = rest.clone().barefoot();
+        let range = figure.vertices(GroupId::Skin, figure.group(GroupId::Skin).count);
+        let skin = evaluate(&figure, &bare.shape, range);
+        assert!(skin.iter().map(|p| p[1]).fold(f32::MAX, f32::min).abs() < 1e-5);
+        let lowest = |b: &RestBody| b.ground.iter().map(|p| p.rest_m.y).fold(f64::MAX, f64::min);
+        assert!(lowest(&bare).abs() < 1e-9);
+        let gap = rest.heads_m[7] - bare.heads_m[7];
+        assert!((gap - DVec3::Y * f64::from(SOLE_M)).length() < 1e-12);
     }
 
     #[test]

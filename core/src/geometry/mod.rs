@@ -11,6 +11,7 @@
 //! | [`person`] | a dressed person at rest: skin, eyes, hair and clothes as one mesh |
 //! | [`surface`] | what the parts of a person look like |
 //! | `garment`, `cut` | clothes, cut from a shell along scalar fields |
+//! | `clothes`, `layers`, `drape`, `skirt` | how garments hang, one over the other |
 //! | `hair`, `beard`, `headwear`, `glasses` | what grows and sits on the head |
 //! | [`skeleton`], [`pose`] | joints, and clips and poses retargeted to a body |
 //! | [`stance`], `hand` | what joints and fingers are to do |
@@ -20,12 +21,15 @@
 
 mod beard;
 pub mod body;
+mod clothes;
 mod cut;
+mod drape;
 mod garment;
 mod glasses;
 mod hair;
 mod hand;
 mod headwear;
+mod layers;
 pub mod person;
 pub mod phenotype;
 pub mod points;
@@ -33,6 +37,7 @@ pub mod pose;
 mod settle;
 pub mod shape;
 pub mod skeleton;
+mod skirt;
 mod solve;
 pub mod stance;
 pub mod surface;

@@ -10,14 +10,14 @@ use std::sync::Arc;
 
 use glam::Vec3;
 
-use super::body::{RestBody, SOLE_M};
-use super::cut::{Builder, Refined, Rim, Surface as Cloth, smooth_normals};
-use super::garment::{self, Cuts, Fields};
-use super::{beard, glasses, hair, headwear, phenotype};
+use super::body::RestBody;
+use super::cut::{Builder, Surface as Cloth, smooth_normals};
+use super::garment::{self, Cuts};
+use super::{beard, clothes, glasses, hair, headwear, phenotype};
 use crate::base::hash::Hasher;
 use crate::library::figure::{Figure, GroupId, LOD_COUNT};
 use crate::library::mesh::{Mesh, SkinVertex};
-use crate::scene::{BeardStyle, Body, Glasses, HairStyle, HeadwearKind, Look, Person};
+use crate::scene::{BeardStyle, Body, Glasses, HairStyle, HeadwearKind, Look, Outfit, Person};
 
 /// What a part of a person is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -44,6 +44,10 @@ pub enum PartKind {
     Top,
     /// Garment of the legs.
     Bottom,
+    /// Garment over the top.
+    Outer,
+    /// Socks.
+    Socks,
     /// Shoes without their soles.
     Shoes,
     /// Soles of the shoes.
@@ -71,17 +75,17 @@ pub struct Dressed {
 }
 
 /// A group evaluated for one person at one level of detail.
-struct Evaluated<'a> {
+pub(super) struct Evaluated<'a> {
     render: &'a [u16],
     uvs: &'a [f32],
     triangles: &'a [u16],
-    positions: Vec<Vec3>,
-    normals: Vec<Vec3>,
+    pub positions: Vec<Vec3>,
+    pub normals: Vec<Vec3>,
     skin: &'a [SkinVertex],
 }
 
 impl<'a> Evaluated<'a> {
-    fn new(figure: &'a Figure, rest: &RestBody, id: GroupId, lod: usize) -> Self {
+    pub fn new(figure: &'a Figure, rest: &RestBody, id: GroupId, lod: usize) -> Self {
         let group = figure.group(id);
         let level = &group.lods[lod];
         let range = figure.vertices(id, level.vertices);
@@ -105,7 +109,7 @@ impl<'a> Evaluated<'a> {
     }
 
     /// The same triangles with other positions and normals.
-    fn with<'b>(&'b self, positions: &'b [Vec3], normals: &'b [Vec3]) -> Cloth<'b> {
+    pub fn with<'b>(&'b self, positions: &'b [Vec3], normals: &'b [Vec3]) -> Cloth<'b> {
         Cloth {
             render: self.render,
             uvs: self.uvs,
@@ -115,20 +119,16 @@ impl<'a> Evaluated<'a> {
             skin: self.skin,
         }
     }
-
-    fn normals_of(&self, positions: &[Vec3]) -> Vec<Vec3> {
-        smooth_normals(positions, self.render, self.triangles)
-    }
 }
 
 /// The mesh and the parts while they grow.
-struct Parts {
-    builder: Builder,
+pub(super) struct Parts {
+    pub builder: Builder,
     parts: Vec<Part>,
 }
 
 impl Parts {
-    fn add(&mut self, kind: PartKind, triangles: Range<u32>, double_sided: bool) {
+    pub fn add(&mut self, kind: PartKind, triangles: Range<u32>, double_sided: bool) {
         if !triangles.is_empty() {
             self.parts.push(Part { kind, triangles, double_sided });
         }
@@ -156,14 +156,16 @@ impl MeshKey {
             cup,
             firmness,
         } = *body;
-        let (top, bottom) = (&outfit.top, &outfit.bottom);
+        let Outfit { top, bottom, outer, shoes } = outfit;
         let mut hasher = Hasher::new();
         hasher.bytes(&[sex as u8, look.hair as u8, bottom.kind as u8]);
         hasher.bytes(&[look.beard as u8, look.headwear.kind as u8, look.glasses as u8]);
+        hasher.bytes(&[top.kind as u8, outer.kind as u8, shoes.kind as u8, u8::from(outer.open)]);
         let sizes =
             [age_years, stature_m, bmi_kg_m2, muscle, proportions, african, asian, european];
         let cuts = [cup, firmness, top.sleeve, top.neckline, top.looseness_m];
-        let ends = [bottom.length, bottom.looseness_m];
+        let ends =
+            [bottom.length, bottom.looseness_m, bottom.flare, outer.looseness_m, shoes.socks];
         sizes.iter().chain(&cuts).chain(&ends).for_each(|v| hasher.number(*v));
         for (name, amount) in &look.face {
             hasher.bytes(name.as_bytes());
@@ -183,7 +185,7 @@ pub fn dress(figure: &Figure, person: &Person, rest: &RestBody, lod: usize) -> D
     let skin = add_skin(&mut out, figure, rest, &cuts, lod);
     add_face(&mut out, figure, person, rest, lod);
     add_head(&mut out, figure, person, (rest, &skin), lod);
-    add_clothes(&mut out, figure, rest, &cuts, lod);
+    clothes::add(&mut out, figure, rest, &cuts, lod);
     let mut mesh = out.builder.mesh;
     bound(&mut mesh);
     mesh.shrink_to_fit();
@@ -200,9 +202,9 @@ fn add_skin<'a>(
 ) -> Evaluated<'a> {
     let mut skin = Evaluated::new(figure, rest, GroupId::Skin, lod);
     let count = skin.positions.len() as u32;
-    let fields = garment::fields(figure, cuts, GroupId::Skin, count);
-    let hidden = garment::hidden(figure, &fields, lod);
-    garment::tuck(figure, &fields, lod, &mut skin.positions, &skin.normals);
+    let places = garment::places(figure, GroupId::Skin, count);
+    let hidden = garment::hidden(figure, cuts, &places, lod);
+    garment::tuck(figure, cuts, &places, lod, &mut skin.positions, &skin.normals);
     let range = out.builder.add_where(&skin.surface(), |t| !t.iter().all(|&v| hidden[v]));
     out.add(PartKind::Skin, range, false);
     skin
@@ -266,44 +268,6 @@ fn add_head(
     }
 }
 
-fn add_clothes(out: &mut Parts, figure: &Figure, rest: &RestBody, cuts: &Cuts, lod: usize) {
-    let shell = Evaluated::new(figure, rest, GroupId::Shell, lod);
-    let count = shell.positions.len() as u32;
-    let fields = garment::fields(figure, cuts, GroupId::Shell, count);
-    let layers = garment::layers(figure, cuts, &fields, lod, &shell.positions, &shell.normals);
-    let rim = (lod < 3).then_some(Rim { thickness_m: 0.0035, round: lod < 2 });
-    // Fine levels follow the curve of a hem inside the shell's triangles.
-    let cut = |out: &mut Parts, layer: &[Vec3], rim, f: fn(&Fields) -> f32| {
-        let field: Vec<f32> = fields.iter().map(f).collect();
-        let normals = shell.normals_of(layer);
-        let whole = shell.with(layer, &normals);
-        if lod > 1 {
-            return out.builder.add_cut(&whole, &field, rim);
-        }
-        let between = |a, b| f(&garment::fields_between(figure, cuts, a, b));
-        let fine = Refined::new(&whole, &field, between);
-        out.builder.add_cut(&fine.surface(), fine.field(), rim)
-    };
-    let range = cut(out, &layers.bottom, rim, |f| f.bottom);
-    out.add(PartKind::Bottom, range, true);
-    let range = cut(out, &layers.top, rim, |f| f.top);
-    out.add(PartKind::Top, range, true);
-
-    // Shoes and soles meet a little above the ground.
-    let edge_m = SOLE_M + 0.006;
-    let split = |sign: f32| -> Vec<f32> {
-        let edge = layers.shoes.iter().map(|p| sign * (p.y - edge_m));
-        fields.iter().zip(edge).map(|(f, e)| f.shoes.min(e)).collect()
-    };
-    let normals = shell.normals_of(&layers.shoes);
-    for (kind, layer, sign, rim) in
-        [(PartKind::Shoes, &layers.shoes, 1.0, rim), (PartKind::Soles, &layers.soles, -1.0, None)]
-    {
-        let range = out.builder.add_cut(&shell.with(layer, &normals), &split(sign), rim);
-        out.add(kind, range, true);
-    }
-}
-
 /// Sets the sphere round all vertices: the middle of their box and the farthest of them.
 fn bound(mesh: &mut Mesh) {
     let (mut low, mut high) = (Vec3::splat(f32::MAX), Vec3::splat(f32::MIN));
@@ -318,16 +282,74 @@ fn bound(mesh: &mut Mesh) {
 
 #[cfg(test)]
 mod tests {
+    use super::super::clothes::Worn;
+    use super::super::garment::Piece;
+    use super::super::layers::Shell;
     use super::*;
     use crate::geometry::body::rest_body;
     use crate::geometry::phenotype::tests::average;
-    use crate::scene::{Bottom, BottomKind, Headwear, Outfit, Placement, Pose, Sex, Shoes, Top};
+    use crate::scene::{
+        Bottom, BottomKind, Headwear, Outer, OuterKind, Placement, Pose, Sex, ShoeKind, Shoes, Top,
+        TopKind,
+    };
     use glam::{DQuat, DVec3};
+
+    fn outfit(i: usize, x: f64) -> Outfit {
+        use BottomKind as B;
+        use TopKind as T;
+        let tops = [T::TShirt, T::Shirt, T::TankTop, T::Hoodie, T::LongSleeve, T::Polo, T::Sweater];
+        let bottoms = [
+            B::Shorts,
+            B::Trousers,
+            B::Jeans,
+            B::SkirtShort,
+            B::Leggings,
+            B::DressLong,
+            B::SkirtLong,
+            B::DressShort,
+        ];
+        let bottom = bottoms[i % 8];
+        let (color, texture, hue_offset_deg) = ([0.2, 0.3, 0.6], None, 0.0);
+        Outfit {
+            top: Top {
+                kind: tops[i % 7],
+                sleeve: 0.15 + 0.8 * x,
+                neckline: 1.0 - x,
+                looseness_m: 0.004 + 0.02 * x,
+                color,
+                texture: None,
+                hue_offset_deg,
+            },
+            bottom: Bottom {
+                kind: bottom,
+                length: if bottom == B::Shorts { 0.4 } else { 1.0 - 0.2 * x },
+                flare: x,
+                looseness_m: 0.02 * (1.0 - x),
+                color,
+                texture: None,
+                hue_offset_deg,
+            },
+            outer: Outer {
+                kind: [OuterKind::None, OuterKind::Jacket, OuterKind::Coat][i % 3],
+                open: i.is_multiple_of(2),
+                looseness_m: 0.01,
+                color,
+                texture,
+                hue_offset_deg,
+            },
+            shoes: Shoes {
+                kind: [ShoeKind::Shoes, ShoeKind::Boots, ShoeKind::Sneakers, ShoeKind::Sandals]
+                    [i % 4],
+                color,
+                socks: 0.4 * x,
+                sock_color: color,
+            },
+        }
+    }
 
     fn person(i: usize) -> Person {
         let x = (i % 4) as f64 / 3.0;
         let sex = if i.is_multiple_of(2) { Sex::Male } else { Sex::Female };
-        let kind = if i.is_multiple_of(3) { BottomKind::Shorts } else { BottomKind::Trousers };
         let face = vec![("jawOpen".to_owned(), x), ("nose-hump-incr".to_owned(), 0.4)];
         Person {
             slot: 0,
@@ -359,25 +381,7 @@ mod tests {
                 iris_color: [0.1, 0.05, 0.02],
                 face,
             },
-            outfit: Outfit {
-                top: Top {
-                    sleeve: 0.15 + 0.8 * x,
-                    neckline: 1.0 - x,
-                    looseness_m: 0.004 + 0.02 * x,
-                    color: [0.2, 0.3, 0.6],
-                    texture: None,
-                    hue_offset_deg: 0.0,
-                },
-                bottom: Bottom {
-                    kind,
-                    length: if kind == BottomKind::Shorts { 0.4 } else { 1.0 },
-                    looseness_m: 0.02 * (1.0 - x),
-                    color: [0.1; 3],
-                    texture: None,
-                    hue_offset_deg: 0.0,
-                },
-                shoes: Shoes { color: [0.05; 3] },
-            },
+            outfit: outfit(i, x),
             pose: Pose::default(),
         }
     }
@@ -441,12 +445,20 @@ mod tests {
         }
     }
 
-    /// Whether a ray meets a layer's triangles within 20 cm.
-    fn meets(o: Vec3, d: Vec3, shell: &Evaluated<'_>, layer: &[Vec3]) -> bool {
-        shell.triangles.chunks_exact(3).any(|t| {
-            let [a, b, c] =
-                [t[0], t[1], t[2]].map(|r| layer[usize::from(shell.render[usize::from(r)])]);
-            if (a - o).length_squared() > 0.09 {
+    /// Triangles of a layer of the shell, by corners.
+    fn triangles_of(body: &Evaluated<'_>, layer: &[Vec3]) -> Vec<[Vec3; 3]> {
+        let corner = |r: u16| layer[usize::from(body.render[usize::from(r)])];
+        body.triangles.chunks_exact(3).map(|t| [t[0], t[1], t[2]].map(corner)).collect()
+    }
+
+    /// Whether a ray meets triangles within 20 cm.
+    fn meets(o: Vec3, d: Vec3, triangles: &[[Vec3; 3]]) -> bool {
+        meets_within(0.2, o, d, triangles)
+    }
+
+    fn meets_within(reach_m: f32, o: Vec3, d: Vec3, triangles: &[[Vec3; 3]]) -> bool {
+        triangles.iter().any(|&[a, b, c]| {
+            if (a - o).length_squared() > (reach_m + 0.1) * (reach_m + 0.1) {
                 return false;
             }
             let (e1, e2) = (b - a, c - a);
@@ -455,8 +467,29 @@ mod tests {
             let s = (o - a) / det;
             let (u, q) = (s.dot(h), s.cross(e1));
             let (v, far) = (d.dot(q), e2.dot(q));
-            det.abs() > 1e-12 && u >= 0.0 && v >= 0.0 && u + v <= 1.0 && (0.0..0.2).contains(&far)
+            det.abs() > 1e-12
+                && u >= 0.0
+                && v >= 0.0
+                && u + v <= 1.0
+                && (0.0..reach_m).contains(&far)
         })
+    }
+
+    /// One person's clothes, to be looked through.
+    fn with_clothes(
+        figure: &Figure,
+        i: usize,
+        lod: usize,
+        look: impl FnOnce(&Evaluated<'_>, &Shell<'_>, &Worn, &Cuts, &RestBody),
+    ) {
+        let p = person(i);
+        let rest = rest_body(figure, &p.body, &p.look.face).unwrap();
+        let cuts = Cuts::new(&p.outfit);
+        let body = Evaluated::new(figure, &rest, GroupId::Shell, lod);
+        let places = garment::places(figure, GroupId::Shell, body.positions.len() as u32);
+        let on = (&body.positions[..], &body.normals[..]);
+        let shell = Shell::new(figure, lod, on, places, &rest.heads_m);
+        look(&body, &shell, &Worn::new(&shell, &cuts), &cuts, &rest);
     }
 
     /// Skin that is drawn although it is under a garment lies below the cloth: going out along
@@ -465,45 +498,50 @@ mod tests {
     fn no_skin_shows_through_the_clothes() {
         const TOLERANCE_M: f32 = 0.001;
         let figure = Figure::built_in().unwrap();
-        for (i, lod) in (0..10).flat_map(|i| (0..LOD_COUNT).map(move |lod| (i, lod))) {
-            let p = person(i);
-            let rest = rest_body(&figure, &p.body, &p.look.face).unwrap();
-            let cuts = Cuts::new(&p.outfit);
-            let fields_of = |id, n: usize| garment::fields(&figure, &cuts, id, n as u32);
-            let mut skin = Evaluated::new(&figure, &rest, GroupId::Skin, lod);
-            let on_skin = fields_of(GroupId::Skin, skin.positions.len());
-            let hidden = garment::hidden(&figure, &on_skin, lod);
-            garment::tuck(&figure, &on_skin, lod, &mut skin.positions, &skin.normals);
-            let shell = Evaluated::new(&figure, &rest, GroupId::Shell, lod);
-            let on_shell = fields_of(GroupId::Shell, shell.positions.len());
-            let layers =
-                garment::layers(&figure, &cuts, &on_shell, lod, &shell.positions, &shell.normals);
-            let covered = &figure.data().covered;
-            let (mut seen, mut outside) = (0, 0);
-            // In the fold of the armpit skin meets skin, and the normal leads into the arm.
-            let in_fold = |v: usize| {
-                let t = figure.template();
-                (0.155..0.175).contains(&t.x[v].abs()) && (0.44..0.465).contains(&t.y[v])
-            };
-            // Some vertices are there for keypoints only.
-            let mut used = vec![false; skin.positions.len()];
-            for r in skin.triangles {
-                used[usize::from(skin.render[usize::from(*r)])] = true;
-            }
-            let drawn = |v: &usize| used[*v] && !hidden[*v] && covered[*v] != 0 && !in_fold(*v);
-            for v in (0..skin.positions.len()).filter(drawn) {
-                let f = &on_skin[v];
-                let above =
-                    [(f.top, &layers.top), (f.bottom, &layers.bottom), (f.shoes, &layers.shoes)];
-                for (_, layer) in above.into_iter().filter(|a| a.0 > 0.004) {
-                    let (q, n) = (skin.positions[v], skin.normals[v]);
-                    seen += 1;
-                    outside += usize::from(!meets(q - n * TOLERANCE_M, n, &shell, layer));
+        for (i, lod) in (0..14).flat_map(|i| (0..LOD_COUNT).map(move |lod| (i, lod))) {
+            with_clothes(&figure, i, lod, |body, _, worn, cuts, rest| {
+                let mut skin = Evaluated::new(&figure, rest, GroupId::Skin, lod);
+                let on_skin = garment::places(&figure, GroupId::Skin, skin.positions.len() as u32);
+                let hidden = garment::hidden(&figure, cuts, &on_skin, lod);
+                garment::tuck(&figure, cuts, &on_skin, lod, &mut skin.positions, &skin.normals);
+                let mut layers = vec![
+                    (Piece::Top, triangles_of(body, &worn.top)),
+                    (Piece::Socks, triangles_of(body, &worn.feet.socks)),
+                ];
+                if cuts.shoes != ShoeKind::Sandals {
+                    layers.push((Piece::Shoes, triangles_of(body, &worn.feet.shoes)));
                 }
-            }
-            let least = [100, 60, 20, 8, 3][lod];
-            assert!(seen >= least, "person {i} level {lod}: only {seen} vertices were tested");
-            assert!(outside == 0, "person {i} level {lod}: {outside} of {seen} vertices outside");
+                if let Some(bottom) = &worn.bottom {
+                    layers.push((Piece::Bottom, triangles_of(body, bottom)));
+                }
+                let covered = &figure.data().covered;
+                let (mut seen, mut outside) = (0, Vec::new());
+                // In the fold of the armpit skin meets skin, and the normal leads into the arm.
+                let in_fold = |v: usize| {
+                    let t = figure.template();
+                    (0.155..0.175).contains(&t.x[v].abs()) && (0.44..0.465).contains(&t.y[v])
+                };
+                // Some vertices are there for keypoints only.
+                let mut used = vec![false; skin.positions.len()];
+                for r in skin.triangles {
+                    used[usize::from(skin.render[usize::from(*r)])] = true;
+                }
+                let drawn = |v: &usize| used[*v] && !hidden[*v] && covered[*v] != 0 && !in_fold(*v);
+                for v in (0..skin.positions.len()).filter(drawn) {
+                    for (piece, layer) in &layers {
+                        if cuts.field(*piece, on_skin[v]) > 0.004 {
+                            let (q, n) = (skin.positions[v], skin.normals[v]);
+                            seen += 1;
+                            if !meets(q - n * TOLERANCE_M, n, layer) {
+                                outside.push((*piece, on_skin[v]));
+                            }
+                        }
+                    }
+                }
+                let least = [100, 60, 20, 8, 3][lod];
+                assert!(seen >= least, "person {i} level {lod}: only {seen} vertices were tested");
+                assert!(outside.is_empty(), "person {i} level {lod}: {outside:?} of {seen}");
+            });
         }
     }
 
@@ -520,7 +558,7 @@ mod tests {
         p
     }
 
-    fn triangles_of(d: &Dressed, kinds: &[PartKind]) -> Vec<[[f32; 3]; 3]> {
+    fn drawn_triangles(d: &Dressed, kinds: &[PartKind]) -> Vec<[[f32; 3]; 3]> {
         let parts = d.parts.iter().filter(|p| kinds.contains(&p.kind));
         let range = parts.flat_map(|p| p.triangles.clone());
         range.map(|t| d.mesh.triangles[t as usize].map(|v| d.mesh.positions[v as usize])).collect()
@@ -541,7 +579,7 @@ mod tests {
             let p = groomed(style, 0, 0, 0);
             let rest = rest_body(&figure, &p.body, &p.look.face).unwrap();
             let levels: Vec<_> = (0..LOD_COUNT)
-                .map(|lod| triangles_of(&dress(&figure, &p, &rest, lod), &HAIR))
+                .map(|lod| drawn_triangles(&dress(&figure, &p, &rest, lod), &HAIR))
                 .collect();
             let count: Vec<usize> = levels.iter().map(Vec::len).collect();
             println!("{style:?}: {count:?} triangles");
@@ -563,7 +601,7 @@ mod tests {
                 let rest = rest_body(&figure, &p.body, &p.look.face).unwrap();
                 let head = head_of(&figure, &p, &rest, lod);
                 let s = head.scalp.frame.scale;
-                let all = triangles_of(&dress(&figure, &p, &rest, lod), &HAIR);
+                let all = drawn_triangles(&dress(&figure, &p, &rest, lod), &HAIR);
                 let points: Vec<Vec3> =
                     all.iter().flatten().map(|q| Vec3::from_array(*q)).collect();
                 let deep = |q: &&Vec3| head.near.surface(**q).is_some_and(|f| f.0 < -0.006 * s);
@@ -582,7 +620,7 @@ mod tests {
             let rest = rest_body(&figure, &p.body, &p.look.face).unwrap();
             for lod in 0..LOD_COUNT {
                 let kinds = [PartKind::Headwear, PartKind::Frame, PartKind::Lenses];
-                let all = triangles_of(&dress(&figure, &p, &rest, lod), &kinds);
+                let all = drawn_triangles(&dress(&figure, &p, &rest, lod), &kinds);
                 assert!(all.len() > 40, "{headwear} {glasses} {lod}");
                 let points: Vec<Vec3> =
                     all.iter().flatten().map(|q| Vec3::from_array(*q)).collect();
@@ -625,7 +663,7 @@ mod tests {
             let head = head_of(&figure, &p, &rest, 0);
             let d = dress(&figure, &p, &rest, 0);
             let local = |kinds: &[PartKind]| -> Vec<Vec3> {
-                let points = triangles_of(&d, kinds).into_iter().flatten();
+                let points = drawn_triangles(&d, kinds).into_iter().flatten();
                 points.map(|q| head.scalp.frame.local(Vec3::from_array(q))).collect()
             };
             let hairs = local(&HAIR);
@@ -639,6 +677,67 @@ mod tests {
         }
     }
 
+    /// A garment lies below the one that is worn over it, wherever both are.
+    #[test]
+    fn no_garment_shows_through_another() {
+        let figure = Figure::built_in().unwrap();
+        for (i, lod) in (0..14).flat_map(|i| (0..LOD_COUNT).map(move |lod| (i, lod))) {
+            with_clothes(&figure, i, lod, |body, shell, worn, cuts, _| {
+                let mut pairs = Vec::new();
+                if let (Some(bottom), false) = (&worn.bottom, cuts.tucked()) {
+                    pairs.push((Piece::Bottom, bottom, Piece::Top, &worn.top));
+                }
+                if let Some(outer) = &worn.outer {
+                    pairs.push((Piece::Top, &worn.top, Piece::Outer, outer));
+                }
+                for (under, low, over, high) in pairs {
+                    let triangles = triangles_of(body, high);
+                    let (mut seen, mut outside) = (0, 0);
+                    for (v, at) in shell.places.iter().enumerate() {
+                        let both = cuts.field(under, *at).min(cuts.field(over, *at));
+                        if both > 0.01 {
+                            seen += 1;
+                            // The shell's normals, along which the layers were raised.
+                            let n = body.normals[v];
+                            let below = (high[v] - low[v]).dot(n) >= 0.002;
+                            outside += usize::from(!below && !meets(low[v], n, &triangles));
+                        }
+                    }
+                    assert!(seen > 0, "person {i} level {lod}: {under:?} is not under {over:?}");
+                    assert!(outside == 0, "person {i} level {lod}: {outside} of {seen} {under:?}");
+                }
+            });
+        }
+    }
+
+    /// At rest no leg stands outside a skirt: going outwards from any part of it one meets cloth.
+    #[test]
+    fn no_leg_stands_outside_a_skirt() {
+        let figure = Figure::built_in().unwrap();
+        let mut skirts = 0;
+        for (i, lod) in (0..16).flat_map(|i| [0, 2, 4].map(|lod| (i, lod))) {
+            with_clothes(&figure, i, lod, |body, shell, worn, cuts, _| {
+                let Some(skirt) = &worn.skirt else { return };
+                skirts += 1;
+                let triangles = skirt.triangles();
+                let ys = || skirt.positions.iter().map(|p| p.y);
+                let (low, high) = (ys().fold(f32::MAX, f32::min), ys().fold(f32::MIN, f32::max));
+                let inside = low + 0.06..high - 0.08;
+                for (v, p) in body.positions.iter().enumerate() {
+                    let at = shell.places[v];
+                    if at.arm > 0.0 || at.leg > cuts.leg_end - 0.1 || !inside.contains(&p.y) {
+                        continue;
+                    }
+                    let out = Vec3::new(p.x, 0.0, p.z - shell.heads_m[0].z as f32);
+                    let out = out.normalize_or(Vec3::Z);
+                    let within = meets_within(0.8, *p, out, &triangles);
+                    assert!(within, "person {i} level {lod}: {at:?}");
+                }
+            });
+        }
+        assert!(skirts > 12);
+    }
+
     #[test]
     fn whoever_shares_a_key_shares_the_mesh() {
         let p = person(4);
@@ -648,7 +747,7 @@ mod tests {
         elsewhere.placement.position_m = DVec3::X;
         elsewhere.outfit.top.color = [0.9; 3];
         assert_eq!(MeshKey::new(&elsewhere), key);
-        let changes: [fn(&mut Person); 9] = [
+        let changes: [fn(&mut Person); 15] = [
             |p| p.body.cup += 1e-9,
             |p| p.body.sex = Sex::Female,
             |p| p.look.face[1].1 += 0.01,
@@ -656,8 +755,14 @@ mod tests {
             |p| p.look.beard = BeardStyle::Goatee,
             |p| p.look.headwear.kind = HeadwearKind::Beanie,
             |p| p.look.glasses = Glasses::Sunglasses,
-            |p| p.outfit.bottom.kind = BottomKind::Shorts,
+            |p| p.outfit.bottom.kind = BottomKind::SkirtLong,
             |p| p.outfit.top.sleeve += 0.01,
+            |p| p.outfit.top.kind = TopKind::Sweater,
+            |p| p.outfit.bottom.flare += 0.01,
+            |p| p.outfit.outer.kind = OuterKind::None,
+            |p| p.outfit.outer.open ^= true,
+            |p| p.outfit.shoes.kind = ShoeKind::Barefoot,
+            |p| p.outfit.shoes.socks += 0.01,
         ];
         for (i, change) in changes.into_iter().enumerate() {
             let mut other = p.clone();

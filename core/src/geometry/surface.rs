@@ -5,7 +5,9 @@
 
 use super::person::PartKind;
 use crate::library::figure::ScalpShade;
-use crate::scene::{BeardStyle, Glasses, HairStyle, HeadwearKind, Look, Person};
+use crate::scene::{
+    BeardStyle, BottomKind, Glasses, HairStyle, HeadwearKind, Look, Person, ShoeKind, TopKind,
+};
 
 /// Which mask texture colours a surface's layers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -48,17 +50,22 @@ pub struct Surface {
     pub texture: Option<String>,
     /// Rotation of the hue.
     pub hue_offset_deg: f32,
+    /// Repeats of the pattern and the relief, against those of other cloths.
+    pub repeat: f32,
     /// Fine structure.
     pub detail: Detail,
     /// Its strength.
     pub detail_strength: f32,
+    /// Strength of the cloth's relief: that of its pattern, or else folds; 0 for none.
+    pub relief_strength: f32,
 }
 
 /// The surface of a part of a person.
 #[must_use]
 pub fn surface(kind: PartKind, person: &Person) -> Surface {
     let (look, outfit) = (&person.look, &person.outfit);
-    let (top, bottom, shoe) = (&outfit.top, &outfit.bottom, outfit.shoes.color);
+    let (top, bottom, outer) = (&outfit.top, &outfit.bottom, &outfit.outer);
+    let shoe = outfit.shoes.color;
     match kind {
         PartKind::Skin => skin_surface(look),
         PartKind::Eyes => eye_surface(look),
@@ -73,9 +80,22 @@ pub fn surface(kind: PartKind, person: &Person) -> Surface {
             _ => plain([0.012, 0.011, 0.011], 0.25),
         },
         PartKind::Lenses => plain([0.006, 0.006, 0.007], 0.06),
-        PartKind::Top => cloth(top.color, top.texture.as_ref(), top.hue_offset_deg),
-        PartKind::Bottom => cloth(bottom.color, bottom.texture.as_ref(), bottom.hue_offset_deg),
+        PartKind::Top => Surface {
+            relief_strength: top_relief(top.kind),
+            ..cloth(top.color, top.texture.as_ref(), top.hue_offset_deg)
+        },
+        PartKind::Bottom => Surface {
+            relief_strength: bottom_relief(bottom.kind),
+            ..cloth(bottom.color, bottom.texture.as_ref(), bottom.hue_offset_deg)
+        },
+        PartKind::Outer => cloth(outer.color, outer.texture.as_ref(), outer.hue_offset_deg),
+        PartKind::Socks => {
+            Surface { relief_strength: 0.0, ..cloth(outfit.shoes.sock_color, None, 0.0) }
+        }
         PartKind::Shoes => plain(narrow(shoe), 0.45),
+        PartKind::Soles if outfit.shoes.kind == ShoeKind::Sneakers => {
+            plain([0.78, 0.77, 0.74], 0.8)
+        }
         PartKind::Soles => plain(sole_color(shoe), 0.8),
     }
 }
@@ -101,8 +121,10 @@ fn plain(base_color: [f32; 3], roughness: f32) -> Surface {
         layers: [[0.0; 4]; 4],
         texture: None,
         hue_offset_deg: 0.0,
+        repeat: 1.0,
         detail: Detail::None,
         detail_strength: 0.0,
+        relief_strength: 0.0,
     }
 }
 
@@ -178,11 +200,33 @@ fn headwear_surface(look: &Look) -> Surface {
 
 fn cloth(color: [f64; 3], texture: Option<&String>, hue_offset_deg: f64) -> Surface {
     Surface {
+        // The stitches of knitwear are painted large.
+        repeat: if texture.is_some_and(|id| id.contains("/knit/")) { 2.0 } else { 1.0 },
         texture: texture.cloned(),
         hue_offset_deg: hue_offset_deg as f32,
         detail: Detail::Cloth,
         detail_strength: 0.10,
+        relief_strength: 0.5,
         ..plain(narrow(color), 0.85)
+    }
+}
+
+/// How much a top's cloth creases.
+const fn top_relief(kind: TopKind) -> f32 {
+    match kind {
+        TopKind::Shirt => 0.8,
+        TopKind::TShirt | TopKind::Hoodie => 0.6,
+        TopKind::LongSleeve | TopKind::Sweater => 0.5,
+        TopKind::Polo | TopKind::TankTop => 0.4,
+    }
+}
+
+const fn bottom_relief(kind: BottomKind) -> f32 {
+    match kind {
+        BottomKind::Leggings => 0.1,
+        BottomKind::Trousers | BottomKind::Shorts => 0.6,
+        BottomKind::Jeans => 0.7,
+        _ => 0.4,
     }
 }
 

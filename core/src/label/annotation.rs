@@ -7,7 +7,7 @@
 use serde::Serialize;
 
 use crate::library::pose::PREFIX;
-use crate::scene::{BottomKind, Camera, Person, Role, Sex};
+use crate::scene::{BottomKind, Camera, OuterKind, Outfit, Person, Role, Sex, ShoeKind, TopKind};
 
 /// Number of keypoints of a person: the COCO-17 set.
 pub const KEYPOINT_COUNT: usize = 17;
@@ -243,10 +243,6 @@ impl PersonMeta {
     /// What a scene says about a person.
     #[must_use]
     pub fn new(person: &Person, mass_kg: Option<f64>) -> Self {
-        let bottom = match person.outfit.bottom.kind {
-            BottomKind::Trousers => "trousers",
-            BottomKind::Shorts => "shorts",
-        };
         let id = &person.pose.clip;
         let (clip, pose) = if id.starts_with(PREFIX) {
             (String::new(), id.clone())
@@ -258,7 +254,7 @@ impl PersonMeta {
             sex: person.body.sex,
             stature_m: person.body.stature_m,
             mass_kg,
-            garments: ["top", bottom, "shoes"].map(String::from).to_vec(),
+            garments: garments(&person.outfit),
             identity: person.identity,
             activity: person.pose.activity.clone(),
             clip,
@@ -267,6 +263,44 @@ impl PersonMeta {
             mirrored: person.pose.mirrored,
         }
     }
+}
+
+/// Names of the garments that show, from top to bottom, as the config calls them.
+fn garments(outfit: &Outfit) -> Vec<String> {
+    let outer = match outfit.outer.kind {
+        OuterKind::None => None,
+        OuterKind::Jacket => Some("jacket"),
+        OuterKind::Coat => Some("coat"),
+    };
+    let top = match outfit.top.kind {
+        TopKind::TShirt => "t_shirt",
+        TopKind::LongSleeve => "long_sleeve",
+        TopKind::Shirt => "shirt",
+        TopKind::Polo => "polo",
+        TopKind::TankTop => "tank_top",
+        TopKind::Hoodie => "hoodie",
+        TopKind::Sweater => "sweater",
+    };
+    let bottom = match outfit.bottom.kind {
+        BottomKind::Trousers => "trousers",
+        BottomKind::Jeans => "jeans",
+        BottomKind::Leggings => "leggings",
+        BottomKind::Shorts => "shorts",
+        BottomKind::SkirtShort => "skirt_short",
+        BottomKind::SkirtLong => "skirt_long",
+        BottomKind::DressShort => "dress_short",
+        BottomKind::DressLong => "dress_long",
+    };
+    let shoes = match outfit.shoes.kind {
+        ShoeKind::Shoes => Some("shoes"),
+        ShoeKind::Sneakers => Some("sneakers"),
+        ShoeKind::Boots => Some("boots"),
+        ShoeKind::Sandals => Some("sandals"),
+        ShoeKind::Barefoot => None,
+    };
+    // A dress is one piece.
+    let top = (!outfit.bottom.kind.is_dress()).then_some(top);
+    [outer, top, Some(bottom), shoes].into_iter().flatten().map(str::to_owned).collect()
 }
 
 /// The class that a pixel shows.

@@ -4,7 +4,7 @@
 //! |---|---|
 //! | `procedural/<family>/<nn>` | sRGB, tiles: for walls, floors and objects |
 //! | `cloth/<family>/<nn>` | sRGB, tiles, light: multiplied by a garment's colour |
-//! | `detail/<skin, hair, cloth>` | plain numbers round 0.5, tiles |
+//! | `detail/<skin, hair, cloth, folds>` | plain numbers round 0.5, tiles |
 //! | `normal/<...>` | plain numbers, normals of the computed texture of that name |
 //! | `folder/<folder>/<file>` | sRGB, a user's JPEG or PNG by its path below the folder |
 //!

@@ -19,6 +19,7 @@ mod keys;
 mod lights;
 mod look;
 mod outfit;
+mod outfit_table;
 mod people;
 mod place;
 mod poisson_disk;
@@ -155,12 +156,14 @@ pub fn check_assets(document: &Document, catalogue: &Catalogue) -> Vec<Problem> 
     let textures = ("texture", &catalogue.textures, true);
     let patterns = ("cloth pattern", &catalogue.cloth_patterns, true);
     let (top, bottom) = (&people.wardrobe.top, &people.wardrobe.bottom);
+    let outer = &people.wardrobe.outer;
     let all = [
         (wall.enabled, "background.wall.texture", &wall.texture, textures),
         (floor.enabled, "background.floor.texture", &floor.texture, textures),
         (occluders.enabled, "occluders.texture", &occluders.texture, textures),
         (people.enabled, "people.wardrobe.top.pattern", &top.pattern, patterns),
         (people.enabled, "people.wardrobe.bottom.pattern", &bottom.pattern, patterns),
+        (people.enabled, "people.wardrobe.outer.pattern", &outer.pattern, patterns),
     ];
     let mut problems = Vec::new();
     for (enabled, path, choice, (kind, known, none_allowed)) in all {

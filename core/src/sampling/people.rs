@@ -40,7 +40,13 @@ pub(super) fn people(
                 scale: DVec3::splat(number(&people.scale, draws.of(keys::PERSON_SCALE, slot))),
             },
             look: look::look(&people.look, faces, traits, lasting),
-            outfit: outfit::outfit(&people.wardrobe, &catalogue.cloth_patterns, lasting, here),
+            outfit: outfit::outfit(
+                &people.wardrobe,
+                &catalogue.cloth_patterns,
+                traits,
+                lasting,
+                here,
+            ),
             pose: pose::pose(&people.pose, catalogue, here),
             body,
         }

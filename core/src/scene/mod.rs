@@ -8,12 +8,14 @@ use glam::{DQuat, DVec3};
 use serde::{Deserialize, Serialize};
 
 mod camera;
+mod outfit;
 mod person;
 
 pub use camera::Camera;
+pub use outfit::{Bottom, BottomKind, Outer, OuterKind, Outfit, ShoeKind, Shoes, Top, TopKind};
 pub use person::{
-    BeardStyle, Body, Bottom, BottomKind, Glasses, HairStyle, HandShape, Headwear, HeadwearKind,
-    Look, Outfit, Person, Pose, PoseBlend, Sex, Shoes, Top,
+    BeardStyle, Body, Glasses, HairStyle, HandShape, Headwear, HeadwearKind, Look, Person, Pose,
+    PoseBlend, Sex,
 };
 
 /// Everything that one frame shows.

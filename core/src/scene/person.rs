@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::Placement;
+use super::{Outfit, Placement};
 
 /// A person in a scene.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -268,80 +268,6 @@ pub struct Look {
     pub iris_color: [f64; 3],
     /// Local face targets by their name in the figure library, with their amount (0..1).
     pub face: Vec<(String, f64)>,
-}
-
-/// Clothes.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Outfit {
-    /// Upper body.
-    pub top: Top,
-    /// Legs.
-    pub bottom: Bottom,
-    /// Feet.
-    pub shoes: Shoes,
-}
-
-/// Garment of the upper body.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Top {
-    /// End of the sleeve along the arm: 0 shoulder .. 1 wrist.
-    pub sleeve: f64,
-    /// How deep the neckline is cut: 0 at the neck .. 1 deep.
-    pub neckline: f64,
-    /// Gap between skin and cloth.
-    pub looseness_m: f64,
-    /// Linear colour of the cloth.
-    pub color: [f64; 3],
-    /// Cloth pattern: texture id in the library; plain where absent.
-    pub texture: Option<String>,
-    /// Rotation of the hue of the cloth.
-    pub hue_offset_deg: f64,
-}
-
-/// Kind of garment of the legs.
-#[derive(
-    Clone,
-    Copy,
-    Debug,
-    PartialEq,
-    Eq,
-    Hash,
-    PartialOrd,
-    Ord,
-    Serialize,
-    Deserialize,
-    schemars::JsonSchema,
-)]
-#[serde(rename_all = "snake_case")]
-pub enum BottomKind {
-    /// One tube a leg.
-    Trousers,
-    /// Trousers that end at or above the knee.
-    Shorts,
-}
-
-/// Garment of the legs.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Bottom {
-    /// Which.
-    pub kind: BottomKind,
-    /// End along the leg: 0 hip .. 1 ankle.
-    pub length: f64,
-    /// Gap between skin and cloth.
-    pub looseness_m: f64,
-    /// Linear colour of the cloth.
-    pub color: [f64; 3],
-    /// Cloth pattern: texture id in the library; plain where absent.
-    pub texture: Option<String>,
-    /// Rotation of the hue of the cloth.
-    pub hue_offset_deg: f64,
-}
-
-/// Shoes.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Shoes {
-    /// Linear colour.
-    pub color: [f64; 3],
 }
 
 /// A frame of a motion clip or a pose, with what was changed in it.

@@ -126,8 +126,12 @@ const FAMILIES: [Family; 50] = [
 ];
 
 /// Fine detail, one texture each.
-const DETAILS: [Family; 3] =
-    [detail("cloth", detail::cloth), detail("hair", detail::hair), detail("skin", detail::skin)];
+const DETAILS: [Family; 4] = [
+    detail("cloth", detail::cloth),
+    Family { relief: true, ..detail("folds", detail::folds) },
+    detail("hair", detail::hair),
+    detail("skin", detail::skin),
+];
 
 impl Kind {
     const fn prefix(self) -> &'static str {
@@ -262,7 +266,10 @@ mod tests {
         assert!(sorted(ids(Kind::Procedural)) > 100);
         assert!(sorted(ids(Kind::Cloth)) > 40);
         assert!(sorted(normal_ids()) > 25);
-        assert_eq!(ids(Kind::Detail), ["detail/cloth", "detail/hair", "detail/skin"]);
+        assert_eq!(
+            ids(Kind::Detail),
+            ["detail/cloth", "detail/folds", "detail/hair", "detail/skin"]
+        );
         for family in families().filter(|f| f.kind == Kind::Procedural) {
             assert!(family.variants >= 3, "{}", family.name);
         }

@@ -1,0 +1,258 @@
+//! All of a person's clothes as parts of the mesh.
+//!
+//! Layers come from [`super::layers`] and [`super::skirt`], edges from [`super::garment`]; here
+//! they are cut and collected. Colours are not known here.
+
+use glam::Vec3;
+
+use super::body::{RestBody, SOLE_M};
+use super::cut::{Builder, Refined, Rim, Surface};
+use super::garment::{self, Cuts, Piece, Place, step};
+use super::layers::{self, Shell, raised};
+use super::person::{Evaluated, PartKind, Parts};
+use super::skirt::{self, Skirt};
+use crate::library::figure::{Figure, GroupId};
+use crate::scene::{BottomKind, ShoeKind};
+
+/// How far collars, plackets and pockets stand off the cloth that they are sewn to.
+const SEWN_M: f32 = 0.0022;
+const COLLAR_M: f32 = 0.0045;
+const POCKET_M: f32 = 0.006;
+/// Thickness of a hood that lies on the back.
+const HOOD_M: f32 = 0.034;
+
+/// How far a piece stands off its cloth, and how far it is moved upwards, metres.
+type Rise<'a> = &'a dyn Fn(Place) -> [f32; 2];
+
+/// Everything that is worn, as surfaces.
+pub(super) struct Worn {
+    pub bottom: Option<Vec<Vec3>>,
+    pub top: Vec<Vec3>,
+    pub skirt: Option<Skirt>,
+    pub outer: Option<Vec<Vec3>>,
+    pub coat: Option<Skirt>,
+    pub feet: layers::Footwear,
+}
+
+impl Worn {
+    /// Lays one garment over the other, from the skin outwards.
+    pub fn new(shell: &Shell<'_>, cuts: &Cuts) -> Self {
+        let feet = layers::footwear(shell);
+        let bottom = cuts.wears(Piece::Bottom).then(|| layers::bottom(shell, cuts, &feet.shoes));
+        let tucked_top = cuts.tucked().then(|| layers::top(shell, cuts, None, &[]));
+        let skirt = cuts.skirt_y().and_then(|top_y| {
+            let cut = skirt::Cut {
+                top_y,
+                leg_end: cuts.leg_end,
+                flare: cuts.flare,
+                ease_m: 0.003 + 0.4 * cuts.bottom_m,
+                gap_m: None,
+            };
+            let under = |i: usize| {
+                tucked_top.as_ref().map_or(shell.positions[i], |t| {
+                    if cuts.field(Piece::Top, shell.places[i]) > -0.01 {
+                        t[i]
+                    } else {
+                        shell.positions[i]
+                    }
+                })
+            };
+            Skirt::new(shell, &cut, &(0..shell.positions.len()).map(under).collect::<Vec<_>>())
+        });
+        let over = skirt.as_ref().map_or(&[][..], |s| &s.positions);
+        let top = tucked_top.unwrap_or_else(|| layers::top(shell, cuts, bottom.as_deref(), over));
+        let outer = cuts
+            .wears(Piece::Outer)
+            .then(|| layers::outer(shell, cuts, bottom.as_deref(), &top, over));
+        let coat = outer.as_ref().zip(cuts.coat()).and_then(|(outer, (top_y, leg_end))| {
+            let cut = skirt::Cut {
+                top_y,
+                leg_end,
+                flare: 0.25,
+                ease_m: 0.002,
+                gap_m: Some(if cuts.open { 0.055 } else { 0.004 }),
+            };
+            // Round the coat's own upper part, whatever is under it, and a skirt's rings.
+            let mut under: Vec<Vec3> = outer.clone();
+            if let Some(s) = &skirt {
+                under.truncate(shell.positions.len());
+                spread_over(&mut under, shell, &s.positions);
+            }
+            Skirt::new(shell, &cut, &under)
+        });
+        Self { bottom, top, skirt, outer, coat, feet }
+    }
+}
+
+/// Moves the leg's vertices of a layer out to the nearest of a skirt's points, where those are
+/// farther from the middle.
+fn spread_over(layer: &mut [Vec3], shell: &Shell<'_>, skirt: &[Vec3]) {
+    let line = Vec3::new(0.0, 0.0, shell.heads_m[0].z as f32);
+    let flat = |p: Vec3| Vec3::new(p.x, 0.0, p.z) - line;
+    for (q, at) in layer.iter_mut().zip(&shell.places) {
+        if at.leg < -0.1 || at.arm > 0.0 {
+            continue;
+        }
+        let out = flat(*q).normalize_or_zero();
+        let far = skirt
+            .iter()
+            .filter(|s| (s.y - q.y).abs() < 0.05 && flat(**s).normalize_or_zero().dot(out) > 0.97)
+            .map(|s| flat(*s).length())
+            .fold(0.0, f32::max);
+        *q += out * (far - flat(*q).length()).max(0.0);
+    }
+}
+
+/// Adds all clothes to the parts.
+pub(super) fn add(out: &mut Parts, figure: &Figure, rest: &RestBody, cuts: &Cuts, lod: usize) {
+    let body = Evaluated::new(figure, rest, GroupId::Shell, lod);
+    let places = garment::places(figure, GroupId::Shell, body.positions.len() as u32);
+    let on = (&body.positions[..], &body.normals[..]);
+    let shell = Shell::new(figure, lod, on, places, &rest.heads_m);
+    let worn = Worn::new(&shell, cuts);
+    let cutter = Cutter { body: &body, shell: &shell, cuts, lod };
+
+    add_bottom(out, &cutter, &worn);
+    add_top(out, &cutter, &worn);
+    if let Some(outer) = &worn.outer {
+        add_outer(out, &cutter, &worn, outer);
+    }
+    add_feet(out, &cutter, &worn);
+}
+
+fn add_bottom(out: &mut Parts, cutter: &Cutter<'_>, worn: &Worn) {
+    if let Some(bottom) = &worn.bottom {
+        let range = cutter.cut(&mut out.builder, Piece::Bottom, bottom, cutter.rim());
+        out.add(PartKind::Bottom, range, true);
+    }
+    if let Some(skirt) = worn.skirt.as_ref().filter(|_| !cutter.cuts.bottom.is_dress()) {
+        let range = skirt.add(&mut out.builder, cutter.rim());
+        out.add(PartKind::Bottom, range, true);
+    }
+}
+
+fn add_top(out: &mut Parts, cutter: &Cutter<'_>, worn: &Worn) {
+    let start = out.builder.mesh.triangles.len() as u32;
+    let builder = &mut out.builder;
+    cutter.cut(builder, Piece::Top, &worn.top, cutter.rim());
+    let (shell, cuts) = (cutter.shell, cutter.cuts);
+    if let Some(skirt) = worn.skirt.as_ref().filter(|_| cuts.bottom.is_dress()) {
+        skirt.add(builder, cutter.rim());
+    }
+    if cutter.lod < 4 {
+        let normals = layers::normals_of(shell, &worn.top);
+        let sewn: [(Piece, Rise<'_>); 4] = [
+            (Piece::Placket, &|_| [SEWN_M, 0.0]),
+            (Piece::Pocket, &|at| {
+                [POCKET_M * step(-0.01, 0.02, cuts.field(Piece::Pocket, at)), 0.0]
+            }),
+            (Piece::Collar, &|at| collar_rise(cuts.neck(at.p))),
+            (Piece::Hood, &|at| [hood_rise(cuts, at), 0.0]),
+        ];
+        for (piece, rise) in sewn {
+            if cuts.wears(piece) {
+                let layer = raised(&worn.top, &normals, &shell.places, rise);
+                cutter.cut(builder, piece, &layer, cutter.rim());
+            }
+        }
+    }
+    out.add(PartKind::Top, start..out.builder.mesh.triangles.len() as u32, true);
+}
+
+/// A collar stands up round the neck before it turns down.
+fn collar_rise(n: f32) -> [f32; 2] {
+    [COLLAR_M, 0.013 * step(0.020, 0.0, n)]
+}
+
+/// A roll that is thickest half way down.
+fn hood_rise(cuts: &Cuts, at: Place) -> f32 {
+    let n = cuts.neck(at.p).max(0.0);
+    let width = garment::hood_width(at.p);
+    let along = (n / width).min(1.0);
+    let bulge = (4.0 * along * (1.0 - along)).max(0.0).sqrt();
+    0.004 + HOOD_M * (0.2 + 6.0 * (width - 0.026)).min(1.0) * bulge
+}
+
+fn add_outer(out: &mut Parts, cutter: &Cutter<'_>, worn: &Worn, outer: &[Vec3]) {
+    let start = out.builder.mesh.triangles.len() as u32;
+    cutter.cut(&mut out.builder, Piece::Outer, outer, cutter.rim());
+    if let Some(coat) = &worn.coat {
+        coat.add(&mut out.builder, cutter.rim());
+    }
+    if cutter.lod < 4 {
+        let normals = layers::normals_of(cutter.shell, outer);
+        let layer = raised(outer, &normals, &cutter.shell.places, |at| {
+            let [off, up] = collar_rise(cutter.cuts.outer_neck(at.p));
+            [off + 0.002, up]
+        });
+        cutter.cut(&mut out.builder, Piece::OuterCollar, &layer, cutter.rim());
+    }
+    out.add(PartKind::Outer, start..out.builder.mesh.triangles.len() as u32, true);
+}
+
+fn add_feet(out: &mut Parts, cutter: &Cutter<'_>, worn: &Worn) {
+    let (cuts, shell) = (cutter.cuts, cutter.shell);
+    if cuts.wears(Piece::Socks) {
+        let rim = cutter.rim().map(|rim| Rim { thickness_m: 0.0018, ..rim });
+        let range = cutter.cut(&mut out.builder, Piece::Socks, &worn.feet.socks, rim);
+        out.add(PartKind::Socks, range, true);
+    }
+    if !cuts.wears(Piece::Shoes) {
+        return;
+    }
+    // Shoes and soles meet a little above the ground; sneakers have thick soles.
+    let edge_m = match cuts.shoes {
+        ShoeKind::Sneakers => SOLE_M + 0.014,
+        _ => SOLE_M + 0.006,
+    };
+    let normals = layers::normals_of(shell, &worn.feet.shoes);
+    let parts = [
+        (PartKind::Shoes, Piece::Shoes, &worn.feet.shoes, 1.0, cutter.rim()),
+        (PartKind::Soles, Piece::Sole, &worn.feet.soles, -1.0, None),
+    ];
+    for (kind, piece, layer, sign, rim) in parts {
+        let edge = worn.feet.shoes.iter().map(|p| sign * (p.y - edge_m));
+        let field: Vec<f32> =
+            shell.places.iter().zip(edge).map(|(at, e)| cuts.field(piece, *at).min(e)).collect();
+        let range = out.builder.add_cut(&cutter.body.with(layer, &normals), &field, rim);
+        out.add(kind, range, true);
+    }
+}
+
+/// Cuts pieces from layers of the shell.
+struct Cutter<'a> {
+    body: &'a Evaluated<'a>,
+    shell: &'a Shell<'a>,
+    cuts: &'a Cuts,
+    lod: usize,
+}
+
+impl Cutter<'_> {
+    fn rim(&self) -> Option<Rim> {
+        let thin = self.cuts.bottom == BottomKind::Leggings;
+        let thickness_m = if thin { 0.002 } else { 0.0035 };
+        (self.lod < 3).then_some(Rim { thickness_m, round: self.lod < 2 })
+    }
+
+    /// Fine levels follow the curve of a hem inside the shell's triangles.
+    fn cut(
+        &self,
+        builder: &mut Builder,
+        piece: Piece,
+        layer: &[Vec3],
+        rim: Option<Rim>,
+    ) -> std::ops::Range<u32> {
+        let (shell, cuts) = (self.shell, self.cuts);
+        let field: Vec<f32> = shell.places.iter().map(|at| cuts.field(piece, *at)).collect();
+        let normals = layers::normals_of(shell, layer);
+        let whole: Surface<'_> = self.body.with(layer, &normals);
+        if self.lod > 1 {
+            return builder.add_cut(&whole, &field, rim);
+        }
+        let between = |a: usize, b: usize| {
+            cuts.field(piece, Place::between(shell.places[a], shell.places[b]))
+        };
+        let fine = Refined::new(&whole, &field, between);
+        builder.add_cut(&fine.surface(), fine.field(), rim)
+    }
+}

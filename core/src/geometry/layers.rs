@@ -1,0 +1,496 @@
+//! The surfaces of garments: the shell's vertices moved out.
+//!
+//! Each layer is pushed out along the shell's normals, bridges its hollows, and hangs from the
+//! chest, the shoulders and the hips as tubes do. Layers lie in order: trousers and shoes, skirts
+//! and tops, what is worn over tops; each keeps off the one below. Where the pieces end is decided
+//! in [`super::garment`].
+
+use glam::{DVec3, Vec3};
+
+use super::cut::smooth_normals;
+use super::drape::Tube;
+use super::garment::{ARM_M, Cuts, LEG_M, Piece, Place, step};
+use super::skeleton::{JOINT_COUNT, Limb, Side};
+use crate::library::figure::{Figure, GroupId};
+use crate::scene::{BottomKind, TopKind};
+
+/// Cloth that lies over another keeps this distance.
+const LAYER_M: f32 = 0.005;
+/// How far shoes stand off the foot.
+const SHOE_M: f32 = 0.009;
+/// Columns and rows of a tube, by level of detail.
+const TUBE: [(usize, usize); 5] = [(28, 32), (22, 24), (14, 16), (10, 12), (7, 8)];
+
+/// The shell of one person at one level of detail.
+pub(super) struct Shell<'a> {
+    pub figure: &'a Figure,
+    pub lod: usize,
+    pub positions: &'a [Vec3],
+    pub normals: &'a [Vec3],
+    pub places: Vec<Place>,
+    /// Joints at rest.
+    pub heads_m: &'a [DVec3; JOINT_COUNT],
+    net: Net<'a>,
+    /// How far the smoothed shell lies outside the shell itself: hollows that cloth bridges.
+    bridge: Vec<f32>,
+}
+
+impl<'a> Shell<'a> {
+    pub fn new(
+        figure: &'a Figure,
+        lod: usize,
+        (positions, normals): (&'a [Vec3], &'a [Vec3]),
+        places: Vec<Place>,
+        heads_m: &'a [DVec3; JOINT_COUNT],
+    ) -> Self {
+        let rounds = [7, 5, 3, 2, 1][lod];
+        let group = figure.group(GroupId::Shell);
+        let net = Net { render: &group.render, triangles: &group.lods[lod].triangles };
+        let smooth = net.smoothed(positions, rounds);
+        let bridge = positions
+            .iter()
+            .zip(&smooth)
+            .zip(normals)
+            .map(|((p, s), n)| (*s - *p).dot(*n))
+            .collect();
+        Self { figure, lod, positions, normals, places, heads_m, net, bridge }
+    }
+
+    fn head(&self, joint: usize) -> Vec3 {
+        self.heads_m[joint].as_vec3()
+    }
+
+    /// The shell pushed out by a height a vertex.
+    fn pushed(&self, by: &[f32]) -> Vec<Vec3> {
+        self.positions.iter().zip(self.normals).zip(by).map(|((p, n), h)| *p + *n * *h).collect()
+    }
+
+    /// Heights that bridge hollows, softened.
+    fn heights(&self, base: impl Fn(usize) -> f32) -> Vec<f32> {
+        let mut heights: Vec<f32> = (0..self.positions.len())
+            .map(|i| {
+                let base = base(i);
+                // The shoulders carry the cloth: it stands off nowhere above them.
+                let most = if self.places[i].p.y > 0.46 { 0.008 } else { 0.03 };
+                base.max(self.bridge[i] + 0.4 * base).min(base + most)
+            })
+            .collect();
+        self.net.soften(&mut heights, 2);
+        heights
+    }
+
+    /// Moves a layer's points out to a tube, by a share that depends on the vertex and one that
+    /// depends on the direction as well.
+    fn spread(
+        &self,
+        layer: &mut [Vec3],
+        tube: &Tube,
+        share: impl Fn(usize) -> f32,
+        towards: impl Fn(usize, Vec3) -> f32,
+    ) {
+        for (i, q) in layer.iter_mut().enumerate() {
+            let share = share(i);
+            if share <= 0.0 {
+                continue;
+            }
+            let spot = tube.spot(*q);
+            let facing = step(0.15, 0.6, self.normals[i].dot(spot.out));
+            let more = (spot.radius - spot.own).max(0.0) * facing;
+            if more > 0.0 {
+                *q += spot.out * (more * share * towards(i, spot.out));
+            }
+        }
+    }
+
+    /// Smooths how a layer stands off, and keeps it off what it covers by at least `gap`.
+    fn settle(
+        &self,
+        layer: &mut [Vec3],
+        under: &[Vec3],
+        rounds: usize,
+        gap: impl Fn(usize) -> f32,
+    ) {
+        let mut offsets: Vec<Vec3> = layer.iter().zip(under).map(|(q, u)| *q - *u).collect();
+        self.net.blend(&mut offsets, rounds);
+        for (i, (q, offset)) in layer.iter_mut().zip(&offsets).enumerate() {
+            let low = gap(i) - offset.dot(self.normals[i]);
+            *q = under[i] + *offset + self.normals[i] * low.max(0.0);
+        }
+    }
+
+    fn points<'b>(
+        &'b self,
+        layer: &'b [Vec3],
+        holds: impl Fn(&Place) -> bool + Clone + 'b,
+    ) -> impl Iterator<Item = Vec3> + Clone + 'b {
+        let places = self.places.iter();
+        layer.iter().zip(places).filter(move |(_, at)| holds(at)).map(|(q, _)| *q)
+    }
+
+    /// A tube round the trunk between two heights on the template, open to further points.
+    pub fn trunk_tube(
+        &self,
+        layer: &[Vec3],
+        (low, high): (f32, f32),
+        more: &[Vec3],
+    ) -> Option<Tube> {
+        let (rows, columns) = TUBE[self.lod];
+        let trunk = move |at: &Place| at.arm < 0.04 && at.p.y > low && at.p.y < high;
+        let points = self.points(layer, trunk).chain(more.iter().copied());
+        Tube::new((self.head(0), Vec3::NEG_Y), Vec3::Z, (rows, columns), points)
+    }
+
+    /// A tube round an arm or a leg of one side.
+    fn limb_tube(
+        &self,
+        layer: &[Vec3],
+        (side, from, to): (Side, Limb, Limb),
+        holds: impl Fn(&Place) -> bool + Clone,
+    ) -> Option<Tube> {
+        let (rows, columns) = TUBE[self.lod];
+        let (a, b) = (self.head(side.joint(from)), self.head(side.joint(to)));
+        let left = side == Side::Left;
+        let points = self.points(layer, move |at| holds(at) && (at.p.x > 0.0) == left);
+        Tube::new((a, b - a), Vec3::Z, (rows, columns), points)
+    }
+}
+
+/// How far a layer's cloth falls back towards the body below what it hangs from, metres a metre.
+#[derive(Clone, Copy)]
+struct Falls {
+    trunk: f32,
+    limb: f32,
+}
+
+/// Shoes and what stands on the ground.
+pub(super) struct Footwear {
+    pub shoes: Vec<Vec3>,
+    pub soles: Vec<Vec3>,
+    pub socks: Vec<Vec3>,
+}
+
+/// Shoes round the feet, with flat soles on the ground.
+pub(super) fn footwear(shell: &Shell<'_>) -> Footwear {
+    let off: Vec<f32> = shell
+        .bridge
+        .iter()
+        .zip(&shell.places)
+        .map(|(b, at)| {
+            // A shaft stands off the shin.
+            let shaft = 0.006 * step(0.90, 0.78, at.leg);
+            SHOE_M.max(b + 0.006).min(0.022) + shaft
+        })
+        .collect();
+    let mut shoes = shell.pushed(&off);
+    flatten_soles(shell.figure, &mut shoes);
+    let outwards = |n: &Vec3| Vec3::new(n.x, 0.0, n.z).normalize_or_zero() * 0.003;
+    let soles = shoes.iter().zip(shell.normals).map(|(p, n)| *p + outwards(n)).collect();
+    let socks = shell.heights(|_| 0.0018);
+    Footwear { shoes, soles, socks: shell.pushed(&socks) }
+}
+
+/// Trousers, over the shoes where they reach them.
+pub(super) fn bottom(shell: &Shell<'_>, cuts: &Cuts, shoes: &[Vec3]) -> Vec<Vec3> {
+    let tight = cuts.bottom == BottomKind::Leggings;
+    let base = |i: usize| {
+        let at = &shell.places[i];
+        let waist = step(0.0, 0.10, super::garment::WAIST_Y - at.p.y);
+        0.002 + cuts.bottom_m * (0.35 + 0.65 * waist)
+    };
+    let heights = if tight { vec![0.0025; shell.positions.len()] } else { shell.heights(base) };
+    let mut layer = shell.pushed(&heights);
+    if !tight {
+        let loose = step(0.003, 0.016, cuts.bottom_m);
+        let falls = match cuts.bottom {
+            BottomKind::Jeans => Falls { trunk: 0.4, limb: 0.085 - 0.03 * loose },
+            BottomKind::Shorts => Falls { trunk: 0.3, limb: 0.04 - 0.06 * loose },
+            _ => Falls { trunk: 0.3, limb: 0.075 - 0.045 * loose },
+        };
+        drape_trousers(shell, cuts, &mut layer, falls);
+    }
+    let rests = !tight && cuts.leg_end > 0.9;
+    shell.settle(&mut layer, shell.positions, 2, |i| {
+        let at = &shell.places[i];
+        let over_shoe = step(-0.02, -0.005, cuts.field(Piece::Shoes, *at)) * f32::from(rests);
+        let shoe = (shoes[i] - shell.positions[i]).dot(shell.normals[i]) + LAYER_M;
+        (0.85 * heights[i]).max(0.0022).max(over_shoe * shoe)
+    });
+    if !tight {
+        crease(shell, &mut layer, 0.0012 + 0.25 * cuts.bottom_m);
+    }
+    part_legs(&shell.places, &mut layer);
+    layer
+}
+
+fn drape_trousers(shell: &Shell<'_>, cuts: &Cuts, layer: &mut [Vec3], falls: Falls) {
+    if let Some(tube) = shell.trunk_tube(layer, (-0.10, 0.10), &[]) {
+        let hips = |i: usize| 0.8 * step(0.14, 0.02, shell.places[i].leg);
+        shell.spread(layer, &tube, hips, |_, _| 1.0);
+    }
+    let end = cuts.leg_end.min(0.94) + 0.04;
+    for side in Side::BOTH {
+        let on_leg = move |at: &Place| at.leg > 0.08 && at.leg < end && at.arm < 0.0;
+        let Some(mut tube) = shell.limb_tube(layer, (side, Limb::UpLeg, Limb::Foot), on_leg) else {
+            continue;
+        };
+        let sign = if side == Side::Left { 1.0 } else { -1.0 };
+        // Between the thighs there is no room.
+        tube.hang(|out| if out.x * sign < -0.3 { falls.limb + 0.05 } else { falls.limb });
+        let own = |i: usize| {
+            let at = &shell.places[i];
+            f32::from((at.p.x > 0.0) == (sign > 0.0)) * step(0.08, 0.22, at.leg)
+        };
+        shell.spread(layer, &tube, own, |i, out| {
+            let upper = step(0.45, 0.25, shell.places[i].leg);
+            1.0 - 0.8 * step(0.0, -0.7, out.x * sign) * upper
+        });
+    }
+}
+
+/// A top, over trousers and over `skirt`, of which the points are given.
+pub(super) fn top(
+    shell: &Shell<'_>,
+    cuts: &Cuts,
+    bottom: Option<&[Vec3]>,
+    skirt: &[Vec3],
+) -> Vec<Vec3> {
+    let gathered = matches!(cuts.top, TopKind::Hoodie | TopKind::Sweater);
+    let base = |i: usize| {
+        let (at, n) = (&shell.places[i], shell.normals[i]);
+        let collar = 0.25 + 0.75 * step(0.0, 0.12, cuts.neck(at.p));
+        0.0025 + cuts.top_m * collar * off_shoulders(at, n)
+    };
+    let heights = shell.heights(base);
+    let mut layer = shell.pushed(&heights);
+    let loose = step(0.002, 0.016, cuts.top_m);
+    let falls = Falls { trunk: 0.75 - 0.62 * loose, limb: 0.5 - 0.38 * loose };
+    drape_top(shell, &mut layer, skirt, falls, |at| {
+        // Ribbed hems and the cuffs of long sleeves lie close.
+        let long = gathered || cuts.sleeve > 0.9;
+        if at.arm > 0.1 {
+            if long { step(0.0, 0.05, (cuts.sleeve - at.arm) * ARM_M) } else { 1.0 }
+        } else if gathered {
+            0.35 + 0.65 * step(0.0, 0.05, at.p.y - 0.01)
+        } else {
+            1.0
+        }
+    });
+    shell.settle(&mut layer, shell.positions, 2, |i| {
+        let over = bottom.filter(|_| cuts.field(Piece::Bottom, shell.places[i]) > -0.03);
+        let trousers =
+            over.map_or(0.0, |b| (b[i] - shell.positions[i]).dot(shell.normals[i]) + LAYER_M);
+        (0.85 * heights[i]).max(0.003).max(trousers)
+    });
+    crease(shell, &mut layer, 0.0010 + 0.22 * cuts.top_m);
+    part_legs(&shell.places, &mut layer);
+    layer
+}
+
+/// What is worn over the top, and over the skirt's points.
+pub(super) fn outer(
+    shell: &Shell<'_>,
+    cuts: &Cuts,
+    bottom: Option<&[Vec3]>,
+    top: &[Vec3],
+    skirt: &[Vec3],
+) -> Vec<Vec3> {
+    let under: Vec<Vec3> = (0..top.len())
+        .map(|i| {
+            let (p, n) = (shell.positions[i], shell.normals[i]);
+            let over = bottom.filter(|_| cuts.field(Piece::Bottom, shell.places[i]) > -0.03);
+            let trousers = over.map_or(p, |b| b[i]);
+            let worn = cuts.field(Piece::Top, shell.places[i]) > -0.03;
+            if worn && (top[i] - p).dot(n) > (trousers - p).dot(n) { top[i] } else { trousers }
+        })
+        .collect();
+    let heights = shell.heights(|i| {
+        let (at, n) = (&shell.places[i], shell.normals[i]);
+        LAYER_M + cuts.outer_m * off_shoulders(at, n)
+    });
+    let mut layer: Vec<Vec3> = under
+        .iter()
+        .zip(shell.normals)
+        .zip(&heights)
+        .map(|((p, n), h)| *p + *n * h.min(LAYER_M + cuts.outer_m))
+        .collect();
+    let falls = Falls { trunk: 0.10, limb: 0.24 };
+    drape_top(shell, &mut layer, skirt, falls, |_| 1.0);
+    shell.settle(&mut layer, &under, 2, |_| LAYER_M);
+    // What is over another layer's creases must not be under them.
+    crease(shell, &mut layer, 0.0012 + 0.22 * cuts.outer_m.max(cuts.top_m));
+    part_legs(&shell.places, &mut layer);
+    layer
+}
+
+/// Share of its looseness by which cloth stands off: it rests on the shoulders and on what is
+/// outermost of the upper arms.
+fn off_shoulders(at: &Place, n: Vec3) -> f32 {
+    let beside = step(0.04, 0.08, at.p.x.abs());
+    let above = step(0.1, 0.6, n.y) * step(0.40, 0.46, at.p.y) * beside;
+    let outside = step(0.3, 0.8, n.x * at.p.x.signum()) * step(0.34, 0.44, at.p.y);
+    1.0 - 0.8 * above.max(outside)
+}
+
+/// Raises folds where limbs bend and where cloth piles up: at elbows, knees, ankles and waist.
+fn crease(shell: &Shell<'_>, layer: &mut [Vec3], most_m: f32) {
+    // Coarse levels cannot show them.
+    if shell.lod > 1 {
+        return;
+    }
+    for ((q, n), at) in layer.iter_mut().zip(shell.normals).zip(&shell.places) {
+        *q += *n * (most_m * fold(at));
+    }
+}
+
+/// Height of the folds at a place, 0..1: waves along the limb that run aslant round it.
+fn fold(at: &Place) -> f32 {
+    const WAVE_M: f32 = 0.052;
+    let bump = |x: f32, middle: f32, half: f32| step(half, 0.0, (x - middle).abs());
+    let (along_m, share) = if at.arm > 0.05 {
+        (at.arm * ARM_M, bump(at.arm, 0.5, 0.24).max(0.7 * bump(at.arm, 0.92, 0.1)))
+    } else if at.leg > 0.1 {
+        (at.leg * LEG_M, bump(at.leg, 0.52, 0.16).max(0.8 * bump(at.leg, 0.95, 0.1)))
+    } else {
+        (-at.p.y, (0.7 * bump(at.p.y, 0.12, 0.10)).max(0.6 * bump(at.leg, 0.03, 0.1)))
+    };
+    if share <= 0.0 {
+        return 0.0;
+    }
+    let slant = 34.0 * at.p.z + 11.0 * libm::sinf(23.0 * at.p.x);
+    let wave = libm::sinf(along_m * (std::f32::consts::TAU / WAVE_M) + 0.35 * slant);
+    share * (0.5 + 0.5 * wave)
+}
+
+/// Lets a layer hang from the chest and down the arms; `share` fades it.
+fn drape_top(
+    shell: &Shell<'_>,
+    layer: &mut [Vec3],
+    skirt: &[Vec3],
+    falls: Falls,
+    share: impl Fn(&Place) -> f32,
+) {
+    if let Some(mut tube) = shell.trunk_tube(layer, (-0.05, 0.44), skirt) {
+        // Arms hang where the cloth at the sides would.
+        tube.hang(|out| falls.trunk + 0.25 * out.x * out.x);
+        let on_trunk = |i: usize| {
+            let at = &shell.places[i];
+            let trunk = step(0.45, 0.36, at.p.y) * step(0.05, 0.0, at.arm);
+            trunk * step(0.16, 0.04, at.leg) * share(at)
+        };
+        shell.spread(layer, &tube, on_trunk, |_, _| 1.0);
+    }
+    for side in Side::BOTH {
+        let on_arm = |at: &Place| at.arm > 0.20;
+        let Some(mut tube) = shell.limb_tube(layer, (side, Limb::Arm, Limb::Hand), on_arm) else {
+            continue;
+        };
+        tube.hang(|_| falls.limb);
+        let left = side == Side::Left;
+        let own = |i: usize| {
+            let at = &shell.places[i];
+            f32::from((at.p.x > 0.0) == left) * step(0.20, 0.36, at.arm) * share(at)
+        };
+        shell.spread(layer, &tube, own, |_, _| 1.0);
+    }
+}
+
+/// Pieces that lie on a layer: moved along its normals and upwards, metres.
+pub(super) fn raised(
+    layer: &[Vec3],
+    normals: &[Vec3],
+    places: &[Place],
+    rise: impl Fn(Place) -> [f32; 2],
+) -> Vec<Vec3> {
+    let raise = |((q, n), at): ((&Vec3, &Vec3), &Place)| {
+        let [off, up] = rise(*at);
+        *q + *n * off + Vec3::Y * up
+    };
+    layer.iter().zip(normals).zip(places).map(raise).collect()
+}
+
+/// Keeps the two legs' cloth on its own side of the middle.
+fn part_legs(places: &[Place], layer: &mut [Vec3]) {
+    const GAP_M: f32 = 0.0012;
+    for (q, at) in layer.iter_mut().zip(places) {
+        let side = at.p.x.signum();
+        if at.leg > -0.05 && at.p.x.abs() > 0.001 && at.p.y < 0.02 && q.x * side < GAP_M {
+            q.x = GAP_M * side;
+        }
+    }
+}
+
+/// The lowest parts of the shoes form a plane on the ground, with a crisp edge.
+fn flatten_soles(figure: &Figure, shoes: &mut [Vec3]) {
+    const FLAT_M: f32 = 0.010;
+    const BLEND_M: f32 = 0.034;
+    for q in shoes.iter_mut().filter(|q| q.y < BLEND_M) {
+        q.y = ((q.y - FLAT_M) * (BLEND_M / (BLEND_M - FLAT_M))).max(0.0);
+    }
+    let first = figure.group(GroupId::Shell).first as usize;
+    for &v in &figure.data().sole {
+        if let Some(q) = shoes.get_mut(usize::from(v) - first) {
+            q.y = 0.0;
+        }
+    }
+}
+
+/// The shell's triangles as a net of neighbours.
+struct Net<'a> {
+    render: &'a [u16],
+    triangles: &'a [u16],
+}
+
+impl Net<'_> {
+    fn each(&self, mut f: impl FnMut([usize; 3])) {
+        for t in self.triangles.chunks_exact(3) {
+            f([t[0], t[1], t[2]].map(|r| usize::from(self.render[usize::from(r)])));
+        }
+    }
+
+    /// Means of neighbours, half way, `rounds` times.
+    fn blend(&self, points: &mut [Vec3], rounds: usize) {
+        for _ in 0..rounds {
+            let mut sums = vec![(Vec3::ZERO, 0.0f32); points.len()];
+            self.each(|[a, b, c]| {
+                for (v, x, y) in [(a, b, c), (b, c, a), (c, a, b)] {
+                    sums[v].0 += points[x] + points[y];
+                    sums[v].1 += 2.0;
+                }
+            });
+            for (p, (sum, n)) in points.iter_mut().zip(sums) {
+                if n > 0.0 {
+                    *p = (*p + sum / n) * 0.5;
+                }
+            }
+        }
+    }
+
+    fn smoothed(&self, points: &[Vec3], rounds: usize) -> Vec<Vec3> {
+        let mut out = points.to_vec();
+        self.blend(&mut out, rounds);
+        out
+    }
+
+    /// The same for numbers.
+    fn soften(&self, values: &mut [f32], rounds: usize) {
+        for _ in 0..rounds {
+            let mut sums = vec![(0.0f32, 0.0f32); values.len()];
+            self.each(|[a, b, c]| {
+                for (v, x, y) in [(a, b, c), (b, c, a), (c, a, b)] {
+                    sums[v].0 += values[x] + values[y];
+                    sums[v].1 += 2.0;
+                }
+            });
+            for (v, (sum, n)) in values.iter_mut().zip(sums) {
+                if n > 0.0 {
+                    *v = (*v + sum / n) * 0.5;
+                }
+            }
+        }
+    }
+}
+
+/// Normals of a layer of the shell.
+pub(super) fn normals_of(shell: &Shell<'_>, layer: &[Vec3]) -> Vec<Vec3> {
+    smooth_normals(layer, shell.net.render, shell.net.triangles)
+}

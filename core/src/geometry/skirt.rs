@@ -1,0 +1,283 @@
+//! Skirts: rings of cloth round both legs, from the waist downwards.
+//!
+//! Each ring is the convex hull of what it goes round, so no leg is outside at rest. It moves with
+//! the legs: in front of a leg with that leg, between the legs with both in proportion, which is
+//! how cloth spans them in a stride. Tops and trousers are not known here.
+
+use glam::Vec3;
+
+use super::cut::{Builder, Rim, Surface, smooth_normals};
+use super::drape::Tube;
+use super::layers::Shell;
+use super::skeleton::{JOINT_COUNT, Limb, Side};
+use crate::library::figure::GroupId;
+use crate::library::mesh::SkinVertex;
+
+/// Rows and columns by level of detail.
+const GRID: [(usize, usize); 5] = [(16, 60), (11, 44), (7, 28), (5, 18), (3, 12)];
+
+/// Share of the way between the legs in which the cloth goes over from one to the other: less
+/// than all of it, since a leg that is ahead bulges inwards of its middle.
+const BETWEEN: f32 = 0.45;
+
+/// What a skirt is like.
+pub(super) struct Cut {
+    /// Upper edge, on the template.
+    pub top_y: f32,
+    /// Lower edge along the leg.
+    pub leg_end: f32,
+    /// 0 it hangs straight .. 1 wide.
+    pub flare: f32,
+    /// Gap between what it goes round and its cloth, metres.
+    pub ease_m: f32,
+    /// Half of the width of the gap in front; nothing for a closed skirt.
+    pub gap_m: Option<f32>,
+}
+
+/// A ring after ring of vertices.
+pub(super) struct Skirt {
+    pub positions: Vec<Vec3>,
+    normals: Vec<Vec3>,
+    skin: Vec<SkinVertex>,
+    render: Vec<u16>,
+    uvs: Vec<f32>,
+    triangles: Vec<u16>,
+    /// Metres inside the hem and the front edges, by vertex.
+    field: Vec<f32>,
+}
+
+impl Skirt {
+    /// A skirt round the points of a layer of the shell.
+    pub fn new(shell: &Shell<'_>, cut: &Cut, under: &[Vec3]) -> Option<Self> {
+        let (rows, columns) = GRID[shell.lod];
+        let heights = Heights::find(shell, cut)?;
+        let (positions, field) = rings(shell, cut, under, &heights, (rows, columns))?;
+        let mut skirt = Self {
+            skin: weights(shell, &positions, columns),
+            normals: Vec::new(),
+            render: Vec::new(),
+            uvs: Vec::new(),
+            triangles: Vec::new(),
+            positions,
+            field,
+        };
+        skirt.weave(rows, columns);
+        skirt.normals = smooth_normals(&skirt.positions, &skirt.render, &skirt.triangles);
+        Some(skirt)
+    }
+
+    /// Triangles and texture coordinates; the last column stands twice, so that the cloth's
+    /// pattern closes.
+    fn weave(&mut self, rows: usize, columns: usize) {
+        const REPEAT_M: f32 = 0.3;
+        let first = self.positions[0].y;
+        for row in 0..rows {
+            for k in 0..=columns {
+                let v = row * columns + k % columns;
+                self.render.push(v as u16);
+                let u = 4.0 * k as f32 / columns as f32;
+                self.uvs.extend([u, (first - self.positions[v].y) / REPEAT_M]);
+            }
+        }
+        let wide = columns + 1;
+        for row in 1..rows {
+            for k in 0..columns {
+                let (a, b) = ((row - 1) * wide + k, row * wide + k);
+                let [a, b, c, d] = [a, a + 1, b, b + 1].map(|v| v as u16);
+                self.triangles.extend([a, b, c, b, d, c]);
+            }
+        }
+    }
+
+    /// Its triangles, by corners.
+    #[cfg(test)]
+    pub fn triangles(&self) -> Vec<[Vec3; 3]> {
+        let corner = |r: u16| self.positions[usize::from(self.render[usize::from(r)])];
+        self.triangles.chunks_exact(3).map(|t| [t[0], t[1], t[2]].map(corner)).collect()
+    }
+
+    /// Adds it to a mesh, with a rim at its edges.
+    pub fn add(&self, builder: &mut Builder, rim: Option<Rim>) -> std::ops::Range<u32> {
+        let surface = Surface {
+            render: &self.render,
+            uvs: &self.uvs,
+            triangles: &self.triangles,
+            positions: &self.positions,
+            normals: &self.normals,
+            skin: &self.skin,
+        };
+        builder.add_cut(&surface, &self.field, rim)
+    }
+}
+
+/// Where a skirt begins and ends on a person. The upper edge is a plane that leans forwards or
+/// backwards as the person's waist does.
+struct Heights {
+    /// Height of the upper edge at z = 0, and its rise along z.
+    top: [f32; 2],
+    hem_y: f32,
+}
+
+impl Heights {
+    fn find(shell: &Shell<'_>, cut: &Cut) -> Option<Self> {
+        // A straight line through the heights of the vertices near the template's ring.
+        let (mut n, mut sz, mut sy, mut szz, mut szy) = (0.0f32, 0.0f32, 0.0f32, 0.0f32, 0.0f32);
+        let scale = shell.heads_m[0].y as f32 / 0.9;
+        for (p, at) in shell.positions.iter().zip(&shell.places) {
+            let above = at.p.y - cut.top_y;
+            if at.arm > 0.0 || above.abs() > 0.035 {
+                continue;
+            }
+            let (z, y) = (p.z, p.y - above * scale);
+            (n, sz, sy, szz, szy) = (n + 1.0, sz + z, sy + y, szz + z * z, szy + z * y);
+        }
+        if n < 4.0 {
+            return None;
+        }
+        let spread = (n * szz - sz * sz).max(1e-9);
+        let rise = ((n * szy - sz * sy) / spread).clamp(-0.6, 0.6);
+        let leg = |joint| shell.heads_m[Side::Left.joint(joint)].y as f32;
+        let (hip, ankle) = (leg(Limb::UpLeg), leg(Limb::Foot));
+        Some(Self { top: [(sy - rise * sz) / n, rise], hem_y: hip + (ankle - hip) * cut.leg_end })
+    }
+
+    fn top_y(&self, z: f32) -> f32 {
+        self.top[0] + self.top[1] * z
+    }
+}
+
+/// The rings' points, and how far each is inside the skirt's edges.
+fn rings(
+    shell: &Shell<'_>,
+    cut: &Cut,
+    under: &[Vec3],
+    heights: &Heights,
+    (rows, columns): (usize, usize),
+) -> Option<(Vec<Vec3>, Vec<f32>)> {
+    let middle_z = shell.heads_m[0].z as f32;
+    let reach = heights.top_y(middle_z) - heights.hem_y;
+    let tilt = 0.15 * heights.top[1].abs() + 0.02;
+    let (low, high) = (heights.hem_y - 0.1 * reach, heights.top_y(middle_z) + tilt);
+    let points = under
+        .iter()
+        .zip(&shell.places)
+        .filter(|(q, at)| at.arm < 0.02 && q.y > low && q.y < high)
+        .map(|(q, _)| *q);
+    let origin = Vec3::new(0.0, high, middle_z);
+    let mut tube = Tube::new((origin, Vec3::NEG_Y), Vec3::Z, (rows * 2, columns), points)?;
+    tube.hang(|_| 0.15 - 0.36 * cut.flare);
+    let folds = (columns / 6).min(9) as f32;
+    // Straight pieces between few columns run inside the hull, and coarse legs are rough.
+    let chord = 1.0 / libm::cosf(std::f32::consts::PI / columns as f32);
+    let ease_m = cut.ease_m + [0.0, 0.001, 0.003, 0.005, 0.009][shell.lod];
+    let mut positions = Vec::with_capacity(rows * columns);
+    let mut field = Vec::with_capacity(rows * columns);
+    for row in 0..rows {
+        // One ring more below the hem: the cut gives the hem its rim.
+        let share = row as f32 / (rows as f32 - 1.6);
+        let down = share * reach;
+        let fold_m = (0.003 + 0.022 * cut.flare) * share.min(1.0) * (down / 0.35).min(1.0);
+        for k in 0..columns {
+            let turn = std::f32::consts::TAU * k as f32 / columns as f32;
+            let (sin, cos) = (libm::sinf(turn), libm::cosf(turn));
+            let near = Vec3::new(cos, 0.0, sin) * 0.05 + Vec3::Z * middle_z;
+            let at = |z: f32| {
+                let top_y = heights.top_y(z);
+                near.with_y(top_y + (heights.hem_y - top_y) * share)
+            };
+            // The edge's height depends on how far out it is, which depends little on its height.
+            let first = tube.spot(at(middle_z));
+            let probe = at(middle_z + (near.z - middle_z) * (first.radius / first.own.max(0.01)));
+            let spot = tube.spot(probe);
+            let wave = 0.5 + 0.5 * libm::cosf(folds * turn + 1.3 * libm::sinf(2.0 * turn));
+            // Between rings the cloth is straight, and hips are round.
+            let half = Vec3::Y * (0.5 * reach / (rows as f32 - 1.6));
+            let radius = tube.spot(probe + half).radius.max(tube.spot(probe - half).radius);
+            let radius = radius.max(spot.radius);
+            let more = radius * chord - spot.own + ease_m + fold_m * wave;
+            let q = probe + spot.out * more;
+            let front = cut.gap_m.map_or(f32::MAX, |gap| {
+                let apart = gap * (1.0 + 0.6 * share);
+                q.x.abs() - apart + if sin > 0.0 { 0.0 } else { 1.0 }
+            });
+            positions.push(q);
+            field.push((reach * (1.0 - share)).min(front));
+        }
+    }
+    Some((positions, field))
+}
+
+/// Joints and weights: those of the nearest places of the shell on the left and on the right, in
+/// proportion to how far the point is on either side between the legs.
+fn weights(shell: &Shell<'_>, positions: &[Vec3], columns: usize) -> Vec<SkinVertex> {
+    let skin =
+        &shell.figure.skin()[shell.figure.vertices(GroupId::Shell, shell.positions.len() as u32)];
+    let hip = shell.heads_m[Side::Left.joint(Limb::UpLeg)].as_vec3();
+    let ankle = shell.heads_m[Side::Left.joint(Limb::Foot)].as_vec3();
+    let mut dense = Vec::with_capacity(positions.len());
+    for ring in positions.chunks(columns) {
+        let y = ring[0].y;
+        let near: Vec<usize> = (0..shell.positions.len())
+            .filter(|&i| (shell.positions[i].y - y).abs() < 0.05 && shell.places[i].arm < 0.02)
+            .collect();
+        let t = ((hip.y - y) / (hip.y - ankle.y)).clamp(0.0, 1.0);
+        let leg_x = (hip.x + (ankle.x - hip.x) * t).abs().max(0.02);
+        for q in ring {
+            let left = 0.5 + 0.5 * (q.x / (BETWEEN * leg_x)).clamp(-1.0, 1.0);
+            let mut sum = [0.0f32; JOINT_COUNT];
+            for (side, share) in [(1.0f32, left), (-1.0, 1.0 - left)] {
+                let own = |i: &&usize| shell.positions[**i].x * side > -0.002;
+                let distance = |i: &usize| (shell.positions[*i] - *q).length_squared();
+                let nearest = near
+                    .iter()
+                    .filter(own)
+                    .min_by(|a, b| distance(a).total_cmp(&distance(b)).then(a.cmp(b)));
+                if let Some(&i) = nearest {
+                    for (&j, &w) in skin[i].joints.iter().zip(&skin[i].weights) {
+                        sum[usize::from(j)] += share * f32::from(w);
+                    }
+                } else {
+                    sum[0] += share * 255.0;
+                }
+            }
+            dense.push(sum);
+        }
+    }
+    soften(&mut dense, columns);
+    dense.iter().map(four_largest).collect()
+}
+
+/// Means over neighbours on the rings and between them.
+fn soften(dense: &mut [[f32; JOINT_COUNT]], columns: usize) {
+    let rows = dense.len() / columns;
+    for _ in 0..2 {
+        let before = dense.to_vec();
+        for row in 0..rows {
+            let (up, down) = (row.saturating_sub(1), (row + 1).min(rows - 1));
+            for k in 0..columns {
+                let at = |r: usize, k: usize| &before[r * columns + k % columns];
+                let five =
+                    [at(row, k), at(row, k + 1), at(row, k + columns - 1), at(up, k), at(down, k)];
+                for j in 0..JOINT_COUNT {
+                    let sum: f32 = five.iter().map(|w| w[j]).sum();
+                    dense[row * columns + k][j] = sum * 0.2;
+                }
+            }
+        }
+    }
+}
+
+fn four_largest(dense: &[f32; JOINT_COUNT]) -> SkinVertex {
+    let mut order: Vec<usize> = (0..JOINT_COUNT).filter(|&j| dense[j] > 0.0).collect();
+    order.sort_by(|&a, &b| dense[b].total_cmp(&dense[a]).then(a.cmp(&b)));
+    order.truncate(4);
+    let sum: f32 = order.iter().map(|&j| dense[j]).sum();
+    let mut out = SkinVertex::default();
+    let mut left = 255u8;
+    for (i, &j) in order.iter().enumerate().rev() {
+        let units = if i == 0 { left } else { ((dense[j] / sum * 255.0 + 0.5) as u8).min(left) };
+        (out.joints[i], out.weights[i]) = (j as u8, units);
+        left -= units;
+    }
+    out
+}
