@@ -190,7 +190,7 @@ impl Grower<'_> {
         }
         if self.style == HairStyle::Balding {
             let here = style::wreath(root.local);
-            thick = thick * here - 0.003 * (1.0 - here);
+            thick = thick * here - 0.0015 * (1.0 - here);
         }
         if let Some(edge) = self.head.brim_y(root.local) {
             // Pressed flat under a hat, and bulging less just below it.
