@@ -10,7 +10,7 @@ pub struct Preset {
 }
 
 /// All of them, the one to begin with first.
-pub const ALL: [Preset; 5] = [
+pub const ALL: [Preset; 8] = [
     Preset { name: "starter", text: include_str!("../../../presets/starter.json") },
     Preset {
         name: "peoplesanspeople",
@@ -19,6 +19,9 @@ pub const ALL: [Preset; 5] = [
     Preset { name: "lineup", text: include_str!("../../../presets/lineup.json") },
     Preset { name: "ages", text: include_str!("../../../presets/ages.json") },
     Preset { name: "faces", text: include_str!("../../../presets/faces.json") },
+    Preset { name: "hair", text: include_str!("../../../presets/hair.json") },
+    Preset { name: "wardrobe", text: include_str!("../../../presets/wardrobe.json") },
+    Preset { name: "poses", text: include_str!("../../../presets/poses.json") },
 ];
 
 /// The preset of a name.
