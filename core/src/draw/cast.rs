@@ -12,8 +12,8 @@ use crate::library::figure::{Figure, FigureError};
 use crate::library::mesh::Mesh;
 use crate::scene::{Person, ShoeKind};
 
-/// About 300 people at two levels of detail each.
-const MESHES_BYTES: usize = 256 << 20;
+/// Some 100 people at the levels of detail that they are mostly seen at.
+const MESHES_BYTES: usize = 176 << 20;
 /// Some 1,500 people.
 const BODIES_BYTES: usize = 32 << 20;
 

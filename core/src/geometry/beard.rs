@@ -11,9 +11,20 @@ use super::cut::{Builder, Surface};
 use super::garment::step;
 use super::hair::Head;
 use super::hair::strand::{Dice, Path, Ribbon};
-use crate::library::figure::{self, Figure, GroupId};
+use crate::library::figure::{self, Figure, GroupId, Whiskers};
 use crate::library::mesh::SkinVertex;
 use crate::scene::BeardStyle;
+
+/// What of the figure's fields a style is.
+pub(super) const fn whiskers(style: BeardStyle) -> Whiskers {
+    match style {
+        BeardStyle::None => Whiskers::None,
+        BeardStyle::Stubble => Whiskers::Stubble,
+        BeardStyle::Moustache => Whiskers::Moustache,
+        BeardStyle::Goatee => Whiskers::Goatee,
+        BeardStyle::Full => Whiskers::Full,
+    }
+}
 
 /// Thickness of the shell, length of the locks from least to most, and locks per square metre.
 const fn form(style: BeardStyle) -> (f32, f32, f32, f32) {
@@ -36,7 +47,9 @@ pub(super) fn add(
     let template = figure.template();
     let first = figure.group(GroupId::Skin).first as usize;
     let at = |v: usize| [template.x[first + v], template.y[first + v], template.z[first + v]];
-    let field: Vec<f32> = (0..face.positions.len()).map(|v| figure::beard(style, at(v))).collect();
+    let whiskers = whiskers(style);
+    let field: Vec<f32> =
+        (0..face.positions.len()).map(|v| figure::beard(whiskers, at(v))).collect();
     let (thick, low, high, density) = form(style);
     let pushed: Vec<Vec3> = face
         .positions

@@ -231,10 +231,10 @@ impl Cutter<'_> {
     fn rim(&self) -> Option<Rim> {
         let thin = self.cuts.bottom == BottomKind::Leggings;
         let thickness_m = if thin { 0.002 } else { 0.0035 };
-        (self.lod < 3).then_some(Rim { thickness_m, round: self.lod < 2 })
+        (self.lod < 3).then_some(Rim { thickness_m, round: self.lod < 1 })
     }
 
-    /// Fine levels follow the curve of a hem inside the shell's triangles.
+    /// The finest level follows the curve of a hem inside the shell's triangles.
     fn cut(
         &self,
         builder: &mut Builder,
@@ -246,7 +246,7 @@ impl Cutter<'_> {
         let field: Vec<f32> = shell.places.iter().map(|at| cuts.field(piece, *at)).collect();
         let normals = layers::normals_of(shell, layer);
         let whole: Surface<'_> = self.body.with(layer, &normals);
-        if self.lod > 1 {
+        if self.lod > 0 {
             return builder.add_cut(&whole, &field, rim);
         }
         let between = |a: usize, b: usize| {

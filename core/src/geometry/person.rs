@@ -282,11 +282,11 @@ fn bound(mesh: &mut Mesh) {
 
 #[cfg(test)]
 mod tests {
-    use super::super::clothes::Worn;
-    use super::super::garment::Piece;
-    use super::super::layers::Shell;
     use super::*;
     use crate::geometry::body::rest_body;
+    use crate::geometry::clothes::Worn;
+    use crate::geometry::garment::Piece;
+    use crate::geometry::layers::Shell;
     use crate::geometry::phenotype::tests::average;
     use crate::scene::{
         Bottom, BottomKind, Headwear, Outer, OuterKind, Placement, Pose, Sex, ShoeKind, Shoes, Top,
@@ -519,7 +519,7 @@ mod tests {
                 // In the fold of the armpit skin meets skin, and the normal leads into the arm.
                 let in_fold = |v: usize| {
                     let t = figure.template();
-                    (0.155..0.175).contains(&t.x[v].abs()) && (0.44..0.465).contains(&t.y[v])
+                    (0.155..0.175).contains(&t.x[v].abs()) && (0.44..0.475).contains(&t.y[v])
                 };
                 // Some vertices are there for keypoints only.
                 let mut used = vec![false; skin.positions.len()];
@@ -648,12 +648,16 @@ mod tests {
             let mut p = person(i);
             p.look.hair = style;
             let rest = rest_body(&figure, &p.body, &p.look.face).unwrap();
-            let mesh = dress(&figure, &p, &rest, 0).mesh;
-            for (q, s) in mesh.positions.iter().zip(&mesh.skin) {
+            let d = dress(&figure, &p, &rest, 0);
+            let kinds = [&HAIR[..], &[PartKind::Headwear, PartKind::Frame, PartKind::Lenses]];
+            let parts = d.parts.iter().filter(|part| kinds.concat().contains(&part.kind));
+            let triangles = parts.flat_map(|part| part.triangles.clone());
+            let vertices = triangles.flat_map(|t| d.mesh.triangles[t as usize]);
+            for v in vertices.map(|v| v as usize) {
+                let (q, s) = (Vec3::from_array(d.mesh.positions[v]), &d.mesh.skin[v]);
                 for (&j, _) in s.joints.iter().zip(&s.weights).filter(|w| *w.1 > 0) {
                     let j = usize::from(j);
-                    let head = rest.heads_m[j].as_vec3();
-                    let far = f64::from((Vec3::from_array(*q) - head).length());
+                    let far = f64::from((q - rest.heads_m[j].as_vec3()).length());
                     assert!(far <= rest.reach_m[j], "{style:?} {i} joint {j}: {far}");
                 }
             }

@@ -14,7 +14,7 @@ use crate::scene::Body;
 /// Mean density of the living body, kg per cubic metre.
 const DENSITY_KG_M3: f64 = 980.0;
 /// The body mass index is met to this.
-const BMI_TOLERANCE: f64 = 0.02;
+const BMI_TOLERANCE: f64 = 0.1;
 /// More trials than any bracket needs.
 const TRIALS: u32 = 40;
 
@@ -143,7 +143,7 @@ mod tests {
                         let body = Body { age_years, stature_m, bmi_kg_m2, muscle, ..average(sex) };
                         let rest = rest_body(&figure, &body, &[]).unwrap();
                         let got = rest.mass_kg / (stature_m * stature_m);
-                        assert!((got - bmi_kg_m2).abs() < 0.03, "{body:?}: {got}");
+                        assert!((got - bmi_kg_m2).abs() < 0.11, "{body:?}: {got}");
                     }
                 }
             }

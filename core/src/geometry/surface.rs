@@ -3,11 +3,10 @@
 //! A person's look and outfit flow in, one [`Surface`] for each kind of part flows out. Meshes are
 //! made in [`super::person`]; textures' pixels are not known here.
 
+use super::beard::whiskers;
 use super::person::PartKind;
-use crate::library::figure::ScalpShade;
-use crate::scene::{
-    BeardStyle, BottomKind, Glasses, HairStyle, HeadwearKind, Look, Person, ShoeKind, TopKind,
-};
+use crate::library::figure::{ScalpShade, Whiskers};
+use crate::scene::{BottomKind, Glasses, HairStyle, HeadwearKind, Look, Person, ShoeKind, TopKind};
 
 /// Which mask texture colours a surface's layers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -15,7 +14,7 @@ pub enum Mask {
     /// None: the layers are unused.
     None,
     /// The figure's skin mask with this scalp and beard.
-    Skin(ScalpShade, BeardStyle),
+    Skin(ScalpShade, Whiskers),
     /// The figure's eye mask.
     Eye,
 }
@@ -139,7 +138,7 @@ fn skin_surface(look: &Look) -> Surface {
     let scalp = mix(skin, hair, if look.hair == HairStyle::Cropped { 0.85 } else { 0.95 });
     Surface {
         wrap: 0.25,
-        mask: Mask::Skin(shade, look.beard),
+        mask: Mask::Skin(shade, whiskers(look.beard)),
         layers: [
             layer(tinted(skin, [0.78, 0.44, 0.43]), 0.40),
             layer(mix(hair, tinted(skin, [0.5, 0.45, 0.42]), 0.25), 0.65),

@@ -14,15 +14,13 @@ use crate::library::mesh::SkinVertex;
 
 /// Slices from hips to shoulders, and along a thigh.
 const SLICES: usize = 12;
-/// An arm may press that far into the trunk: flesh gives way, metres at adult size.
-const SOFT_M: f64 = 0.007;
+/// Free space between arm and trunk, for clothes and for what an ellipse leaves out, metres.
+const FREE_M: f64 = 0.008;
 /// A vertex belongs to what has so much of its weight, of 255.
 const MOSTLY: u32 = 150;
-/// Clothes between arm and trunk, metres.
-const CLOTH_M: f64 = 0.006;
 /// An arm is turned by no more than this at a time and in all, degrees.
 const STEP_DEG: f64 = 12.0;
-const STEPS: usize = 12;
+const STEPS: usize = 20;
 
 /// A level cut through a trunk at rest, model space, metres.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -209,7 +207,6 @@ impl Trunk {
                 }
             };
         }
-        let soft_m = SOFT_M - CLOTH_M;
         let mut worst: Option<(f64, DVec3, DVec3)> = None;
         for (center_m, radius_m) in spheres {
             let thighs = Side::BOTH.into_iter().zip(&self.thighs);
@@ -219,7 +216,7 @@ impl Trunk {
             for (joint, outline) in solids {
                 let model_from_rest = &skeleton.model_from_rest[joint];
                 let in_rest = model_from_rest.inverse().transform_point3(center_m);
-                let Some((depth_m, out)) = outline.depth(in_rest, radius_m - soft_m) else {
+                let Some((depth_m, out)) = outline.depth(in_rest, radius_m + FREE_M) else {
                     continue;
                 };
                 if depth_m > 1e-4 && worst.is_none_or(|w| depth_m > w.0) {
@@ -331,7 +328,8 @@ mod tests {
             let gap = skeleton
                 .joint_m(joint, rest[joint])
                 .distance(flip(skeleton.joint_m(other, rest[other])));
-            assert!(gap < 1e-9, "{joint} {gap}");
+            // Of two spheres that are as deep rounding chooses one, and the ways out differ a little.
+            assert!(gap < 1e-6, "{joint} {gap}");
         }
     }
 }

@@ -36,7 +36,7 @@ use crate::library::mesh::{Mesh, SkinVertex};
 use crate::scene::{HairStyle, HeadwearKind, Person};
 
 /// Locks by level of detail: share of the finest count, width, and share of the points.
-const LEVELS: [(f32, f32, f32); 3] = [(1.0, 1.0, 1.0), (0.36, 1.55, 0.65), (0.14, 2.3, 0.5)];
+const LEVELS: [(f32, f32, f32); 3] = [(0.6, 1.25, 0.85), (0.22, 1.9, 0.6), (0.1, 2.6, 0.5)];
 /// Roots start a little under the skin.
 const SUNK_M: f32 = 0.0014;
 

@@ -15,13 +15,12 @@ mod whiskers;
 
 pub use data::{FigureData, Group, GroupId, LOD_COUNT, Lod};
 use data::{KEYPOINT_VERTICES, MAX_FACTORS};
-pub use whiskers::{ScalpShade, beard, wreath};
+pub use whiskers::{ScalpShade, Whiskers, beard, wreath};
 
 use glam::DVec3;
 
 use crate::library::mesh::SkinVertex;
 use crate::library::texture::{Encoding, Texture};
-use crate::scene::BeardStyle;
 
 /// Joints of the rig.
 pub const JOINT_COUNT: usize = 52;
@@ -60,7 +59,7 @@ pub struct Figure {
     skin: Vec<SkinVertex>,
     skin_mask: Arc<Texture>,
     /// Skin masks with other scalps and beards, made when first asked for.
-    painted: [OnceLock<Arc<Texture>>; 3 * BeardStyle::ALL.len()],
+    painted: [OnceLock<Arc<Texture>>; 3 * Whiskers::ALL.len()],
     eye_mask: Arc<Texture>,
     reach_margin_m: [f64; JOINT_COUNT],
 }
@@ -272,11 +271,11 @@ impl Figure {
 
     /// The same with another scalp and the shade of a beard in alpha; made once, 5.6 MB each.
     #[must_use]
-    pub fn painted_skin_mask(&self, scalp: ScalpShade, beard: BeardStyle) -> &Arc<Texture> {
-        if scalp == ScalpShade::Full && beard == BeardStyle::None {
+    pub fn painted_skin_mask(&self, scalp: ScalpShade, beard: Whiskers) -> &Arc<Texture> {
+        if scalp == ScalpShade::Full && beard == Whiskers::None {
             return &self.skin_mask;
         }
-        self.painted[scalp as usize * BeardStyle::ALL.len() + beard as usize]
+        self.painted[scalp as usize * Whiskers::ALL.len() + beard as usize]
             .get_or_init(|| whiskers::mask(&self.data, &self.skin_mask, scalp, beard))
     }
 

@@ -9,7 +9,6 @@ use std::sync::Arc;
 use super::data::FigureData;
 use super::{GroupId, with_mips};
 use crate::library::texture::Texture;
-use crate::scene::BeardStyle;
 
 /// What of the scalp is shaded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -20,6 +19,27 @@ pub enum ScalpShade {
     Wreath,
     /// Barely: a shaven head.
     Shaven,
+}
+
+/// What grows on the face.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Whiskers {
+    /// Nothing.
+    None,
+    /// A shade.
+    Stubble,
+    /// On the upper lip.
+    Moustache,
+    /// Round the mouth.
+    Goatee,
+    /// All of it.
+    Full,
+}
+
+impl Whiskers {
+    /// All, in order.
+    pub const ALL: [Self; 5] =
+        [Self::None, Self::Stubble, Self::Moustache, Self::Goatee, Self::Full];
 }
 
 /// 0 below a, 1 above b, smooth between; falling where a > b.
@@ -40,7 +60,7 @@ pub fn wreath([x, y, z]: [f32; 3]) -> f32 {
 
 /// About the distance inside the border of a beard, metres; negative where none grows.
 #[must_use]
-pub fn beard(style: BeardStyle, [x, y, z]: [f32; 3]) -> f32 {
+pub fn beard(style: Whiskers, [x, y, z]: [f32; 3]) -> f32 {
     let x = x.abs();
     // Only in front of the ears and above the throat.
     if z < 0.02 || !(0.60..0.75).contains(&y) {
@@ -75,10 +95,10 @@ pub fn beard(style: BeardStyle, [x, y, z]: [f32; 3]) -> f32 {
         (cheek - y).min(y - throat).min(z - back)
     };
     let grown = match style {
-        BeardStyle::None => -1.0,
-        BeardStyle::Moustache => moustache,
-        BeardStyle::Goatee => moustache.max(chin).max(ring),
-        BeardStyle::Stubble | BeardStyle::Full => jaw.max(moustache).max(chin),
+        Whiskers::None => -1.0,
+        Whiskers::Moustache => moustache,
+        Whiskers::Goatee => moustache.max(chin).max(ring),
+        Whiskers::Stubble | Whiskers::Full => jaw.max(moustache).max(chin),
     };
     grown.min(lips)
 }
@@ -88,11 +108,11 @@ const LIPS_Y: f32 = 0.6625;
 const LIPS_HALF_M: f32 = 0.0085;
 
 /// Share of the hair's colour in the skin under a beard.
-const fn shade(style: BeardStyle) -> f32 {
+const fn shade(style: Whiskers) -> f32 {
     match style {
-        BeardStyle::None => 0.0,
-        BeardStyle::Stubble => 0.42,
-        BeardStyle::Moustache | BeardStyle::Goatee | BeardStyle::Full => 0.85,
+        Whiskers::None => 0.0,
+        Whiskers::Stubble => 0.42,
+        Whiskers::Moustache | Whiskers::Goatee | Whiskers::Full => 0.85,
     }
 }
 
@@ -101,7 +121,7 @@ pub(super) fn mask(
     data: &FigureData,
     plain: &Texture,
     scalp: ScalpShade,
-    style: BeardStyle,
+    style: Whiskers,
 ) -> Arc<Texture> {
     let side = 1usize << plain.log2_size;
     let mut top = plain.texels[..side * side].to_vec();
@@ -177,11 +197,11 @@ mod tests {
         let skin: Vec<[f32; 3]> =
             figure.vertices(GroupId::Skin, count).map(at).filter(|p| p[1] > 0.58).collect();
         let grown = |style| skin.iter().filter(|p| beard(style, **p) > 0.0).count();
-        assert_eq!(grown(BeardStyle::None), 0);
-        assert!(grown(BeardStyle::Moustache) > 8);
-        assert!(grown(BeardStyle::Goatee) > grown(BeardStyle::Moustache) + 20);
-        assert!(grown(BeardStyle::Full) > 2 * grown(BeardStyle::Goatee));
-        for style in BeardStyle::ALL {
+        assert_eq!(grown(Whiskers::None), 0);
+        assert!(grown(Whiskers::Moustache) > 8);
+        assert!(grown(Whiskers::Goatee) > grown(Whiskers::Moustache) + 20);
+        assert!(grown(Whiskers::Full) > 2 * grown(Whiskers::Goatee));
+        for style in Whiskers::ALL {
             for p in &skin {
                 let eyes = p[1] > 0.715 && p[0].abs() < 0.05;
                 let nose = p[2] > 0.152 && p[1] > 0.690;
@@ -204,7 +224,7 @@ mod tests {
     fn a_painted_mask_changes_the_scalp_alone() {
         let figure = Figure::built_in().unwrap();
         let plain = figure.skin_mask();
-        let painted = figure.painted_skin_mask(ScalpShade::Wreath, BeardStyle::Full);
+        let painted = figure.painted_skin_mask(ScalpShade::Wreath, Whiskers::Full);
         assert_eq!(painted.texels.len(), plain.texels.len());
         let (mut more, mut less) = (0, 0);
         let side = 1usize << plain.log2_size;
