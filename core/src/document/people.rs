@@ -38,7 +38,7 @@ impl Default for People {
     fn default() -> Self {
         Self {
             enabled: true,
-            identities: Some(100),
+            identities: Some(50),
             placement: Placement::PoissonDisk(PoissonDisk {
                 x_m: [-7.5, 7.5],
                 y_m: [-7.5, 7.5],
