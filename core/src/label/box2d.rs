@@ -4,8 +4,9 @@
 //! sample stands for a cell one n-th of a pixel wide and high (the sample patterns have one sample
 //! in each such row and column), so a side is right to half a cell. The mask is made of whole
 //! pixels, and a box must hold it: where a mask pixel reaches further than the samples in it, the
-//! side moves out to the pixel's edge. The box therefore contains the mask and exceeds it by less
-//! than a pixel, unless a part thinner than a pixel reaches further.
+//! side moves out to the pixel's edge. Single samples far from the mask, such as of a leg that shows
+//! through a gap thinner than a pixel, move a side by one pixel at most. The box therefore contains
+//! the mask and exceeds it by no more than a pixel.
 
 use super::mask::Extent;
 use crate::plan::ObjectSamples;
@@ -18,11 +19,13 @@ pub fn visible_box(seen: &ObjectSamples, mask: &Extent, samples: u32) -> [f64; 4
     let half_cell = 0.5 / f64::from(samples);
     let low = |axis: usize| {
         let sample = f64::from(seen.min_16th[axis]) / 16.0 - half_cell;
-        sample.min(f64::from(mask.min[axis]))
+        let edge = f64::from(mask.min[axis]);
+        sample.clamp(edge - 1.0, edge)
     };
     let high = |axis: usize| {
         let sample = f64::from(seen.max_16th[axis]) / 16.0 + half_cell;
-        sample.max(f64::from(mask.max[axis]) + 1.0)
+        let edge = f64::from(mask.max[axis]) + 1.0;
+        sample.clamp(edge, edge + 1.0)
     };
     let (x, y) = (low(0), low(1));
     [x, y, high(0) - x, high(1) - y]
@@ -46,6 +49,13 @@ mod tests {
         let seen = ObjectSamples { count: 5, min_16th: [2, 2], max_16th: [16 + 2, 14] };
         let mask = Extent { pixels: 1, min: [0, 0], max: [0, 0] };
         assert_eq!(visible_box(&seen, &mask, 4), [0.0, 0.0, 1.25, 1.0]);
+    }
+
+    #[test]
+    fn what_shows_far_from_the_mask_widens_it_by_a_pixel() {
+        let seen = ObjectSamples { count: 5, min_16th: [2, 2], max_16th: [16 * 30 + 2, 14] };
+        let mask = Extent { pixels: 1, min: [0, 0], max: [0, 0] };
+        assert_eq!(visible_box(&seen, &mask, 4), [0.0, 0.0, 2.0, 1.0]);
     }
 
     #[test]
