@@ -69,7 +69,7 @@ kernel! {
     fn set_up(chunk: &mut Chunk, mesh_triangles: &[[u32; 3]], target: &Target<'_>) = set_up_body
 }
 
-// Triangle by triangle, but the newer form's three-operand instructions spare a tenth.
+// Triangle by triangle; as a kernel it gets the instructions of the detected processor.
 #[inline(always)]
 fn set_up_body<const AVX2: bool>(
     chunk: &mut Chunk,
