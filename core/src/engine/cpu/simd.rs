@@ -339,6 +339,32 @@ impl<const AVX2: bool> I32x8<AVX2> {
         }
     }
 
+    #[inline(always)]
+    pub(in crate::engine::cpu) fn eq(self, other: Self) -> Mask8<AVX2> {
+        either! {
+            avx2: cast(arch::_mm256_cmpeq_epi32(cast(self.0), cast(other.0))),
+            lanes: Mask8(lanes!(0, i => -i32::from(self.0[i] == other.0[i]))),
+        }
+    }
+
+    /// The smaller number.
+    #[inline(always)]
+    pub(in crate::engine::cpu) fn min(self, other: Self) -> Self {
+        either! {
+            avx2: cast(arch::_mm256_min_epi32(cast(self.0), cast(other.0))),
+            lanes: Self(lanes!(0, i => self.0[i].min(other.0[i]))),
+        }
+    }
+
+    /// The larger number.
+    #[inline(always)]
+    pub(in crate::engine::cpu) fn max(self, other: Self) -> Self {
+        either! {
+            avx2: cast(arch::_mm256_max_epi32(cast(self.0), cast(other.0))),
+            lanes: Self(lanes!(0, i => self.0[i].max(other.0[i]))),
+        }
+    }
+
     /// Shifts every lane by the lowest five bits of another.
     #[inline(always)]
     pub(in crate::engine::cpu) fn shl_each(self, bits: Self) -> Self {
@@ -396,36 +422,17 @@ impl<const AVX2: bool> I32x8<AVX2> {
     pub(in crate::engine::cpu) fn gather_pairs(self, table: &[u32]) -> [Self; 2] {
         let last = table.len().checked_sub(2).expect("a table of pairs has two entries");
         let at = self.min_unsigned(Self::splat(last.min(u32::MAX as usize) as u32 as i32));
-        let mut both = [0; LANES];
+        let mut both = [[0; 2]; LANES];
         let mut i = 0;
         while i < LANES {
             let at = at.0[i] as u32 as usize;
             #[expect(unsafe_code, reason = "eight comparisons at once instead of one by one")]
             // SAFETY: no lane is above `last`, the place of the table's last entry but one.
             let pair = unsafe { [*table.get_unchecked(at), *table.get_unchecked(at + 1)] };
-            both[i] = u64::from(pair[0]) | u64::from(pair[1]) << 32;
+            both[i] = pair.map(|entry| entry as i32);
             i += 1;
         }
-        either! {
-            avx2: {
-                // Lanes 0, 1, 4, 5 and 2, 3, 6, 7: shuffling works within halves.
-                let low = arch::_mm256_set_epi64x(
-                    both[5] as i64, both[4] as i64, both[1] as i64, both[0] as i64,
-                );
-                let high = arch::_mm256_set_epi64x(
-                    both[7] as i64, both[6] as i64, both[3] as i64, both[2] as i64,
-                );
-                let (low, high) = (cast(low), cast(high));
-                [
-                    cast(arch::_mm256_shuffle_ps::<0b10_00_10_00>(low, high)),
-                    cast(arch::_mm256_shuffle_ps::<0b11_01_11_01>(low, high)),
-                ]
-            },
-            lanes: [
-                Self(lanes!(0, i => both[i] as i32)),
-                Self(lanes!(0, i => (both[i] >> 32) as i32)),
-            ],
-        }
+        unzipped(both)
     }
 
     #[inline(always)]
@@ -456,6 +463,36 @@ impl<const AVX2: bool> Mask8<AVX2> {
         }
     }
 
+    /// The first value where set, the second elsewhere.
+    #[inline(always)]
+    pub(in crate::engine::cpu) fn select_i32(
+        self,
+        set: I32x8<AVX2>,
+        unset: I32x8<AVX2>,
+    ) -> I32x8<AVX2> {
+        either! {
+            avx2: cast(arch::_mm256_blendv_epi8(cast(unset.0), cast(set.0), cast(self.0))),
+            lanes: I32x8(lanes!(0, i => (set.0[i] & self.0[i]) | (unset.0[i] & !self.0[i]))),
+        }
+    }
+
+    /// One bit a lane, the first lane lowest.
+    #[inline(always)]
+    pub(in crate::engine::cpu) fn bits(self) -> u32 {
+        either! {
+            avx2: arch::_mm256_movemask_ps(cast(self.0)) as u32,
+            lanes: {
+                let mut bits = 0;
+                let mut i = 0;
+                while i < LANES {
+                    bits |= (self.0[i] as u32 & 1) << i;
+                    i += 1;
+                }
+                bits
+            },
+        }
+    }
+
     /// The first value where set, the second elsewhere, for unsigned integers.
     #[inline(always)]
     pub(in crate::engine::cpu) fn select_u32(self, set: u32, unset: [u32; LANES]) -> [u32; LANES] {
@@ -480,6 +517,30 @@ impl<const AVX2: bool> Mask8<AVX2> {
                 ((m[0] | m[4]) | (m[1] | m[5])) | ((m[2] | m[6]) | (m[3] | m[7])) != 0
             },
         }
+    }
+}
+
+/// The first and the second of eight pairs.
+#[inline(always)]
+pub(in crate::engine::cpu) fn unzipped<const AVX2: bool>(
+    pairs: [[i32; 2]; LANES],
+) -> [I32x8<AVX2>; 2] {
+    either! {
+        avx2: {
+            // Lanes 0, 1, 4, 5 and 2, 3, 6, 7: shuffling works within halves.
+            let both = |i: usize| i64::from(pairs[i][0] as u32) | i64::from(pairs[i][1]) << 32;
+            let low = arch::_mm256_set_epi64x(both(5), both(4), both(1), both(0));
+            let high = arch::_mm256_set_epi64x(both(7), both(6), both(3), both(2));
+            let (low, high) = (cast(low), cast(high));
+            [
+                cast(arch::_mm256_shuffle_ps::<0b10_00_10_00>(low, high)),
+                cast(arch::_mm256_shuffle_ps::<0b11_01_11_01>(low, high)),
+            ]
+        },
+        lanes: [
+            I32x8(lanes!(0, i => pairs[i][0])),
+            I32x8(lanes!(0, i => pairs[i][1])),
+        ],
     }
 }
 
