@@ -13,6 +13,7 @@
 #![allow(clippy::missing_transmute_annotations, reason = "lanes and registers, as declared")]
 
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Shl, Shr, Sub};
+use std::sync::atomic::{AtomicU32, Ordering};
 
 /// Number of lanes.
 pub(in crate::engine::cpu) const LANES: usize = 8;
@@ -388,31 +389,32 @@ impl<const AVX2: bool> I32x8<AVX2> {
     /// lane: gather instructions are no faster, and much slower on processors that guard them
     /// against data sampling.
     #[inline(always)]
-    fn gather<T: Copy>(self, table: &[T], zero: T) -> [T; LANES] {
+    fn gather<T>(self, table: &[T], load: impl Fn(&T) -> u32) -> [u32; LANES] {
         let last = table.len().checked_sub(1).expect("a table has entries");
         let at = self.min_unsigned(Self::splat(last.min(u32::MAX as usize) as u32 as i32));
-        let mut entries = [zero; LANES];
+        let mut entries = [0; LANES];
         let mut i = 0;
         while i < LANES {
             #[expect(unsafe_code, reason = "eight comparisons at once instead of one by one")]
             // SAFETY: no lane is above `last`, the place of the table's last entry.
-            let entry = unsafe { *table.get_unchecked(at.0[i] as u32 as usize) };
-            entries[i] = entry;
+            let entry = unsafe { table.get_unchecked(at.0[i] as u32 as usize) };
+            entries[i] = load(entry);
             i += 1;
         }
         entries
     }
 
-    /// As [`Self::gather`].
+    /// As [`Self::gather`], of the bits of numbers that other threads may write meanwhile.
     #[inline(always)]
-    pub(in crate::engine::cpu) fn gather_f32(self, table: &[f32]) -> F32x8<AVX2> {
-        F32x8(self.gather(table, 0.0))
+    pub(in crate::engine::cpu) fn gather_shared_f32(self, table: &[AtomicU32]) -> F32x8<AVX2> {
+        let bits = self.gather(table, |entry| entry.load(Ordering::Relaxed));
+        F32x8(lanes!(0.0, i => f32::from_bits(bits[i])))
     }
 
     /// As [`Self::gather`].
     #[inline(always)]
     pub(in crate::engine::cpu) fn gather_u32(self, table: &[u32]) -> Self {
-        let entries = self.gather(table, 0);
+        let entries = self.gather(table, |entry| *entry);
         Self(lanes!(0, i => entries[i] as i32))
     }
 

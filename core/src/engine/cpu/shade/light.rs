@@ -25,7 +25,7 @@ use super::GROUPS;
 use super::material::Look;
 use super::surface::Points;
 use crate::draw::abi::Lights;
-use crate::engine::cpu::shadow::SunShadow;
+use crate::engine::cpu::shadow::map::SunShadow;
 use crate::engine::cpu::simd::{F32x8, Vec3x8};
 
 /// How much further off the surface wrapped light looks up shadows, metres per unit of `wrap`:
