@@ -1,5 +1,7 @@
 //! Both forms of every operation give the same bits.
 
+use std::sync::atomic::AtomicU32;
+
 use super::*;
 
 #[test]
