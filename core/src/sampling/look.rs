@@ -1,6 +1,6 @@
 //! Skin, hair, eyes and faces. Where the document says `"auto"` they follow ancestry, age and sex.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 use super::expression::face_units;
 use super::keys;
@@ -9,6 +9,7 @@ use super::quantile;
 use super::style;
 use super::value::{color, flag, item, linear, number};
 use crate::base::rng::{Draw, Stream};
+use crate::document::cast::{FixedColor, MemberLook};
 use crate::document::{self, Auto, Choice};
 use crate::scene::{Headwear, Look};
 
@@ -110,42 +111,66 @@ pub(super) fn face_shapes(targets: &[String]) -> Vec<FaceShape> {
     shapes
 }
 
+/// What is known of a person stays, the rest is drawn.
 pub(super) fn look(
     look: &document::Look,
+    known: &MemberLook,
     faces: &[FaceShape],
     traits: PersonTraits,
     source: Source,
 ) -> Look {
     let of = |key| source.random_if(look.enabled).of(key);
-    let given = |auto: &Auto<document::Color>, key, otherwise: &dyn Fn(Draw) -> [f64; 3]| match auto
-    {
-        Auto::Auto(_) => otherwise(of(key)),
-        Auto::Given(law) => color(law, of(key)),
+    let given = |known: Option<FixedColor>,
+                 auto: &Auto<document::Color>,
+                 key,
+                 otherwise: &dyn Fn(Draw) -> [f64; 3]| match (known, auto) {
+        (Some(known), _) => known.linear(),
+        (None, Auto::Auto(_)) => otherwise(of(key)),
+        (None, Auto::Given(law)) => color(law, of(key)),
     };
     let greying = of(keys::GREYING);
     let dyed = traits.age_years >= DYED_FROM_YEARS && flag(&look.dyed, of(keys::DYED));
     Look {
-        skin_color: given(&look.skin, keys::SKIN, &|draw| skin(traits, draw)),
-        hair: chosen(&look.hair, of(keys::HAIR), &|draw| style::hair(traits, draw)),
-        hair_color: given(&look.hair_color, keys::HAIR_COLOR, &|draw| {
+        skin_color: given(known.skin, &look.skin, keys::SKIN, &|draw| skin(traits, draw)),
+        hair: chosen(known.hair, &look.hair, of(keys::HAIR), &|draw| style::hair(traits, draw)),
+        hair_color: given(known.hair_color, &look.hair_color, keys::HAIR_COLOR, &|draw| {
             if dyed { dye(of(keys::DYE)) } else { hair_color(traits, draw, greying) }
         }),
-        beard: chosen(&look.beard, of(keys::BEARD), &|draw| style::beard(traits, draw)),
+        beard: chosen(known.beard, &look.beard, of(keys::BEARD), &|draw| {
+            style::beard(traits, draw)
+        }),
         headwear: Headwear {
-            kind: chosen(&look.headwear, of(keys::HEADWEAR), &|draw| style::headwear(traits, draw)),
-            color: given(&look.headwear_color, keys::HEADWEAR_COLOR, &|draw| felt(draw)),
+            kind: chosen(known.headwear, &look.headwear, of(keys::HEADWEAR), &|draw| {
+                style::headwear(traits, draw)
+            }),
+            color: given(
+                known.headwear_color,
+                &look.headwear_color,
+                keys::HEADWEAR_COLOR,
+                &|draw| felt(draw),
+            ),
         },
-        glasses: chosen(&look.glasses, of(keys::GLASSES), &|draw| style::glasses(traits, draw)),
-        iris_color: given(&look.iris_color, keys::IRIS, &|draw| iris(traits, draw)),
-        face: if look.enabled { face(look, faces, source) } else { Vec::new() },
+        glasses: chosen(known.glasses, &look.glasses, of(keys::GLASSES), &|draw| {
+            style::glasses(traits, draw)
+        }),
+        iris_color: given(known.iris_color, &look.iris_color, keys::IRIS, &|draw| {
+            iris(traits, draw)
+        }),
+        face: face(look, known, faces, source),
     }
 }
 
-/// What is given, or what follows from the person.
-fn chosen<T: Copy>(given: &Auto<Choice<T>>, draw: Draw, otherwise: &dyn Fn(Draw) -> T) -> T {
-    match given {
-        Auto::Auto(_) => otherwise(draw),
-        Auto::Given(choice) => *item(choice, draw),
+/// What is known, what is given, or what follows from the person.
+fn chosen<T: Copy>(
+    known: Option<T>,
+    given: &Auto<Choice<T>>,
+    draw: Draw,
+    otherwise: &dyn Fn(Draw) -> T,
+) -> T {
+    match (known, given) {
+        (Some(known), _) => known,
+        (None, Auto::Auto(_)) => otherwise(draw),
+        (None, Auto::Given(choice)) => *item(choice, draw),
     }
 }
 
@@ -199,8 +224,32 @@ fn felt(draw: Draw) -> [f64; 3] {
     linear(pick(&HEADWEAR_SRGB, draw))
 }
 
+/// The shape and the expression of a face, by name.
+fn face(
+    look: &document::Look,
+    known: &MemberLook,
+    shapes: &[FaceShape],
+    source: Source,
+) -> Vec<(String, f64)> {
+    let listed = |amounts: &BTreeMap<String, f64>| -> Vec<(String, f64)> {
+        amounts.iter().map(|(name, amount)| (name.clone(), *amount)).collect()
+    };
+    let mut face = match &known.face {
+        Some(amounts) => listed(amounts),
+        None if look.enabled => face_shape(look, shapes, source),
+        None => Vec::new(),
+    };
+    face.extend(match &known.expression {
+        Some(amounts) => listed(amounts),
+        None if look.enabled => face_units(&look.expression, source),
+        None => Vec::new(),
+    });
+    face.sort_by(|a, b| a.0.cmp(&b.0));
+    face
+}
+
 /// Some shapes, each with the absolute value of a normal.
-fn face(look: &document::Look, shapes: &[FaceShape], source: Source) -> Vec<(String, f64)> {
+fn face_shape(look: &document::Look, shapes: &[FaceShape], source: Source) -> Vec<(String, f64)> {
     let wanted = number(&look.face_targets, source.of(keys::FACE_COUNT)).round() as usize;
     let mut order: Stream = source.of(keys::FACE_ORDER).stream();
     let mut rest: Vec<usize> = (0..shapes.len()).collect();
@@ -214,8 +263,6 @@ fn face(look: &document::Look, shapes: &[FaceShape], source: Source) -> Vec<(Str
         let amount = (std * quantile::normal(u)).abs().min(look.face_max);
         face.extend(shapes[shape].iter().map(|name| (name.clone(), amount)));
     }
-    face.extend(face_units(&look.expression, source));
-    face.sort_by(|a, b| a.0.cmp(&b.0));
     face
 }
 
@@ -281,7 +328,8 @@ mod tests {
         let expression = document::Expression { enabled: false, ..Default::default() };
         let law = document::Look { face_targets: 3.0.into(), expression, ..Default::default() };
         for frame in 0..50 {
-            let face = face(&law, &shapes, Source::new(Draws::new(1, frame), 0));
+            let face =
+                face(&law, &MemberLook::default(), &shapes, Source::new(Draws::new(1, frame), 0));
             let of = |name: &str| face.iter().find(|f| f.0 == name).map(|f| f.1);
             assert_eq!(of("ears/l-ear-up"), of("ears/r-ear-up"));
             assert_eq!(of("l-eye-big"), of("r-eye-big"));
