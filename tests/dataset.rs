@@ -220,7 +220,7 @@ fn people_of_one_config_are_named_in_the_data_set_of_another() {
     assert_eq!(exit, Exit::Done, "{messages}");
     let edited = read(&path("all/0003.json"), |person| {
         person["name"] = "maria".into();
-        person["body"]["age_years"] = 71.into();
+        person["body"]["age_years"] = 71.5.into();
     });
     let poses = r#"{"poses": {"mine": {"activity": "testing", "both": {"elbow_flexion": 40}}}}"#;
     fs::create_dir(path("assets")).unwrap();

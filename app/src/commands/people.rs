@@ -29,9 +29,10 @@ pub fn run<R: Road>(
     }
     let noun = if people.len() == 1 { "person" } else { "people" };
     let name = files.first().map_or_else(String::new, |(path, _)| path.display().to_string());
+    let more = if files.len() > 1 { ", ..." } else { "" };
     console.note(&format!(
         "{} {noun} -> {}; a config lists them as \
-         \"people\": {{\"cast\": [{{\"file\": \"{name}\"}}]}}, paths from its own folder",
+         \"people\": {{\"cast\": [{{\"file\": \"{name}\"}}{more}]}}, paths from its own folder",
         people.len(),
         args.out.display()
     ));

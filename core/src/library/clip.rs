@@ -94,7 +94,7 @@ pub const MIN_FRAMES: usize = 2;
 /// Frames of a clip at most, half an hour at 60 a second; as [`ClipFrame`]s some 45 MB.
 pub const MAX_FRAMES: usize = 108_000;
 /// Size of the unpacked file at most, bytes; read no further.
-const MAX_UNPACKED_BYTES: u64 = 64 << 20;
+const MAX_UNPACKED_BYTES: u64 = 32 << 20;
 
 /// One motion.
 #[derive(Clone, Debug, PartialEq)]
@@ -493,7 +493,7 @@ mod tests {
 
     #[test]
     fn files_that_unpack_without_end_are_given_up() {
-        let bomb = packed(1000, 80 << 20);
+        let bomb = packed(1000, 33 << 20);
         assert!(bomb.len() < 1 << 20, "{} bytes", bomb.len());
         assert!(matches!(Clips::from_bytes(&bomb), Err(ClipError::TooLarge)));
     }
