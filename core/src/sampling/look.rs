@@ -77,14 +77,43 @@ const IRIS_EUROPEAN: [([f64; 3], f64); 5] = [
 /// Everybody else's.
 const IRIS_OTHERS: [([f64; 3], f64); 2] = [([0.18, 0.10, 0.06], 0.6), ([0.28, 0.17, 0.09], 0.4)];
 
+/// What faces differ by most. A face has one of each, of those whose names begin like this, before
+/// it has any other: breadth and outline of the head; length, breadth and depth of the nose; breadth,
+/// height and depth of the mouth; chin; distance and height of the eyes; cheeks. They are the main
+/// measures of Farkas, "Anthropometry of the Head and Face" (2nd ed., 1994).
+const MAIN: [&[&str]; 12] = [
+    &["head-scale-horiz"],
+    &[
+        "head-oval",
+        "head-round",
+        "head-rectangular",
+        "head-square",
+        "head-diamond",
+        "head-triangular",
+        "head-fat",
+    ],
+    &["nose-scale-vert"],
+    &["nose-scale-horiz", "nose-width3"],
+    &["nose-scale-depth"],
+    &["mouth-scale-horiz"],
+    &["l-eye-trans-in", "l-eye-trans-out"],
+    &["mouth-trans-up", "mouth-trans-down"],
+    &["chin-bones", "chin-width", "chin-height"],
+    &["mouth-trans-forward", "mouth-trans-backward", "chin-prognathism"],
+    &["l-eye-trans-up", "l-eye-trans-down", "forehead-trans"],
+    &["l-cheek"],
+];
+
 /// These face targets change so much that they get a smaller standard deviation.
-const STRONG: [&str; 8] = [
+const STRONG: [&str; 10] = [
     "pointed",
     "triangle",
     "head-age",
-    "trans-",
+    "head-trans",
+    "neck-trans",
     "nubian",
-    "scale-vert",
+    "head-scale-vert",
+    "neck-scale-vert",
     "invertedtriangular",
     "asym",
 ];
@@ -248,14 +277,24 @@ fn face(
     face
 }
 
-/// Some shapes, each with the absolute value of a normal.
+/// Some shapes, the main ones first, each with the absolute value of a normal.
 fn face_shape(look: &document::Look, shapes: &[FaceShape], source: Source) -> Vec<(String, f64)> {
     let wanted = number(&look.face_targets, source.of(keys::FACE_COUNT)).round() as usize;
     let mut order: Stream = source.of(keys::FACE_ORDER).stream();
     let mut rest: Vec<usize> = (0..shapes.len()).collect();
+    let mut chosen = Vec::new();
+    for group in MAIN.iter().take(wanted) {
+        let is_of = |shape: usize| group.iter().any(|start| shapes[shape][0].starts_with(start));
+        let of: Vec<usize> = (0..rest.len()).filter(|i| is_of(rest[*i])).collect();
+        if !of.is_empty() {
+            chosen.push(rest.swap_remove(of[order.below(of.len())]));
+        }
+    }
+    while chosen.len() < wanted.min(shapes.len()) {
+        chosen.push(rest.swap_remove(order.below(rest.len())));
+    }
     let mut face = Vec::new();
-    for _ in 0..wanted.min(shapes.len()) {
-        let shape = rest.swap_remove(order.below(rest.len()));
+    for shape in chosen {
         // By the shape's own number: which others were chosen changes nothing.
         let u = source.of(keys::FACE_AMOUNT).lane(shape as u16).uniform();
         let strong = shapes[shape].iter().any(|name| STRONG.iter().any(|s| name.contains(s)));
@@ -316,6 +355,23 @@ mod tests {
         let natural = mean(draws().map(|d| strength(hair_color(anyone, d, d.lane(9)))));
         assert!(natural < 0.05, "{natural}");
         assert!(draws().all(|d| strength(dye(d)) > 4.0 * natural));
+    }
+
+    #[test]
+    fn every_face_has_one_of_each_main_shape() {
+        let figure = crate::library::figure::Figure::built_in().unwrap();
+        let names: Vec<String> = figure.face_shape_names().map(str::to_owned).collect();
+        let shapes = face_shapes(&names);
+        let law = document::Look { face_targets: 15.0.into(), ..Default::default() };
+        for frame in 0..30 {
+            let face = face_shape(&law, &shapes, Source::new(Draws::new(1, frame), 0));
+            for group in MAIN {
+                let is_of = |name: &str| group.iter().any(|start| name.starts_with(start));
+                assert!(face.iter().any(|(name, _)| is_of(name)), "{group:?} {face:?}");
+            }
+            let sides = face.iter().filter(|(name, _)| name.starts_with("r-")).count();
+            assert_eq!(face.len() - sides, 15);
+        }
     }
 
     #[test]
