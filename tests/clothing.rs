@@ -24,9 +24,9 @@ use glam::{DMat3, DQuat, DVec3, Vec3};
 const SIDE: u32 = 640;
 /// Share of the picture's side that the person covers.
 const FILL: f64 = 0.94;
-/// Smaller spots do not count, pixels: of a grown-up who stands these are 4 mm by 10 mm, which is
-/// lost between the pixels of an edge.
-const SPOT_PX: usize = 6;
+/// Smaller spots do not count, pixels: these are a square centimetre of a grown-up who stands, three
+/// pixels by four, which is what an edge a few pixels long leaves by chance.
+const SPOT_PX: usize = 12;
 const PRESETS: [&str; 2] = ["peoplesanspeople", "starter"];
 const PEOPLE_OF_EACH: usize = 250;
 
@@ -96,9 +96,9 @@ fn extent(drawn: &Drawn) -> (DVec3, DVec3) {
     let palette = &drawn.list.palette[object.palette.start as usize..object.palette.end as usize];
     let posed = object.mesh.positions.iter().zip(&object.mesh.skin).map(|(p, s)| {
         let by = |joint: u8| {
-            Vec3::from_array(palette[usize::from(joint)].map(|r| {
-                r[0] * p[0] + r[1] * p[1] + r[2] * p[2] + r[3]
-            }))
+            Vec3::from_array(
+                palette[usize::from(joint)].map(|r| r[0] * p[0] + r[1] * p[1] + r[2] * p[2] + r[3]),
+            )
         };
         let all = s.joints.iter().zip(&s.weights);
         let q: Vec3 = all.map(|(&j, &w)| by(j) * (f32::from(w) / 255.0)).sum();
@@ -175,7 +175,11 @@ fn clothes_of_posed_people_cover_what_they_should() {
         let person = &scene.people[0];
         let _ = write!(report, "\n{i:3} {name} {}:", person.pose.clip);
         for f in flaws.iter().take(3) {
-            let _ = write!(report, " {:?} through {:?} of {:?}, {} px at {:?};", f.under, f.over, f.limb, f.pixels, f.at);
+            let _ = write!(
+                report,
+                " {:?} through {:?} of {:?}, {} px at {:?};",
+                f.under, f.over, f.limb, f.pixels, f.at
+            );
         }
         if let Some(folder) = std::env::var_os("FIGURANT_FLAWS") {
             picture(scene, &library, flaws, &Path::new(&folder).join(format!("{i:03}.png")));

@@ -31,6 +31,8 @@ const HANGS_M: f32 = 0.5;
 const BEFORE_M: f32 = 0.05;
 /// Edge of a cell of the grid in which triangles are looked up, metres.
 const CELL_M: f32 = 0.06;
+/// Over an edge of cloth the normal turns by more than this: cosine.
+const EDGE_COS: f32 = 0.4;
 /// Edge of a cell of the body; trunk and limb are the same place in neighbouring ones only.
 const PLACE_M: f32 = 0.08;
 
@@ -190,7 +192,11 @@ impl Cloth {
                 let q = s.cross(e1);
                 let (u, v, t) = (s.dot(h), along.dot(q), e2.dot(q));
                 // The determinant is negative where the way goes with the triangle's normal.
-                sign * det > 1e-12 && u >= 0.0 && v >= 0.0 && u + v <= 1.0 && (0.0..=1.0).contains(&t)
+                sign * det > 1e-12
+                    && u >= 0.0
+                    && v >= 0.0
+                    && u + v <= 1.0
+                    && (0.0..=1.0).contains(&t)
             })
         })
     }
@@ -237,10 +243,13 @@ impl Sorted {
     #[must_use]
     pub fn new(dressed: &Dressed, outfit: &Outfit) -> Self {
         let mesh = &dressed.mesh;
-        let corner = |t: u32| mesh.triangles[t as usize].map(|v| Vec3::from_array(mesh.positions[v as usize]));
+        let corner = |t: u32| {
+            mesh.triangles[t as usize].map(|v| Vec3::from_array(mesh.positions[v as usize]))
+        };
         let of_layer = |layer: Layer| {
             let parts = dressed.parts.iter().filter(move |p| Layer::of(p.kind) == Some(layer));
-            parts.flat_map(|p| p.triangles.clone()).map(corner).collect::<Vec<_>>()
+            let triangles = parts.flat_map(|p| p.triangles.clone());
+            triangles.filter(|t| !is_edge(mesh, *t)).map(corner).collect::<Vec<_>>()
         };
         let hangs = Layer::GARMENTS.map(|layer| match layer {
             Layer::Bottom => outfit.bottom.kind.is_skirt(),
@@ -255,27 +264,29 @@ impl Sorted {
         let patch = |t: u32, kind: PartKind, double_sided: bool| {
             let limb = limb_of(mesh, t, &limbs);
             let layer = Layer::of(kind);
+            let cloth_of = layer.filter(|_| !is_edge(mesh, t));
             let [a, b, c] = corner(t);
             let (middle, normal) = ((a + b + c) / 3.0, (b - a).cross(c - a).normalize_or_zero());
             let covers = |k: &usize| {
                 let over = Layer::GARMENTS[*k];
-                layer.is_some_and(|l| over != l && over.is_over(l, outfit))
+                cloth_of.is_some_and(|l| over != l && over.is_over(l, outfit))
                     && cloth[*k].covers(middle, normal, limb)
             };
             let covered = (0..5).filter(covers).fold(0, |bits, k| bits | 1 << k);
             let (from, along) = (middle + normal * OUTSIDE_M, -normal * (COVERS_M + OUTSIDE_M));
-            let is_under = |under: Layer| {
-                layer.is_some_and(|l| l != under && l.is_over(under, outfit))
-            };
-            let hangs = layer.is_some_and(|l| (0..5).any(|k| hangs[k] && Layer::GARMENTS[k] == l));
+            let is_under =
+                |under: Layer| cloth_of.is_some_and(|l| l != under && l.is_over(under, outfit));
+            let hangs =
+                cloth_of.is_some_and(|l| (0..5).any(|k| hangs[k] && Layer::GARMENTS[k] == l));
             let covers = hangs
                 || layers().any(|(c, under)| is_under(under) && c.is_crossed(1.0, from, along));
             let place = if covered != 0 || covers { cell_of(middle, PLACE_M) } else { [0; 3] };
             Patch { layer, limb, covered, covers, place, double_sided }
         };
-        let all = dressed.parts.iter().flat_map(|p| {
-            p.triangles.clone().map(move |t| (t, p.kind, p.double_sided))
-        });
+        let all = dressed
+            .parts
+            .iter()
+            .flat_map(|p| p.triangles.clone().map(move |t| (t, p.kind, p.double_sided)));
         let mut sorted: Vec<(Patch, u32)> = all.map(|(t, k, d)| (patch(t, k, d), t)).collect();
         sorted.sort_unstable();
         let runs = sorted.chunk_by(|a, b| a.0 == b.0);
@@ -293,7 +304,8 @@ impl Sorted {
         least: usize,
     ) -> Vec<Flaw> {
         let mut render = |list: &DrawList| {
-            let plan = PassPlan::new(&Outputs::from([Output::Instance]), SceneFacts { sun_shadow: false });
+            let plan =
+                PassPlan::new(&Outputs::from([Output::Instance]), SceneFacts { sun_shadow: false });
             engine.render(list, &plan, &mut StageTimes::default()).expect("a sound draw list")
         };
         let seen = render(&self.list(view, palette, Shown::All));
@@ -313,17 +325,23 @@ impl Sorted {
             let pixels = (view.width * view.height) as usize;
             let shows = |i: usize| {
                 let (under, cloth) = (patch(&seen, i)?, patch(&outside, i)?);
-                let legs = self.hangs[k] && !under.limb.is_arm() && !cloth.limb.is_arm();
+                // A skirt is round both legs; out of a coat, which is open in front, they may step.
+                let closed = self.hangs[k] && over != Layer::Outer;
+                let legs = closed && !under.limb.is_arm() && !cloth.limb.is_arm();
                 let near = cloth.covers && (legs || under.is_beside(&cloth));
                 let before = depth(&outside, i) - depth(&seen, i);
-                let pokes = before > 0.0 && before < BEFORE_M && depth(&outsides, i) == depth(&seen, i);
+                let pokes =
+                    before > 0.0 && before < BEFORE_M && depth(&outsides, i) == depth(&seen, i);
                 let flaw = under.covered & 1 << k != 0 && near && pokes;
                 flaw.then_some(under).and_then(|u| Some((u.layer?, u.limb)))
             };
             let marks: Vec<_> = (0..pixels).map(shows).collect();
-            all.extend(regions(&marks, view.width as usize).into_iter().filter(|r| r.1 >= least).map(
-                |((under, limb), pixels, at)| Flaw { under, over, limb, pixels, at },
-            ));
+            all.extend(
+                regions(&marks, view.width as usize)
+                    .into_iter()
+                    .filter(|r| r.1 >= least)
+                    .map(|((under, limb), pixels, at)| Flaw { under, over, limb, pixels, at }),
+            );
         }
         all.sort_by_key(|f| std::cmp::Reverse(f.pixels));
         all
@@ -378,6 +396,12 @@ fn limb_of(mesh: &Mesh, t: u32, limbs: &[Limb]) -> Limb {
     }
     let all = [Limb::Trunk, Limb::LeftArm, Limb::RightArm, Limb::LeftLeg, Limb::RightLeg];
     all.into_iter().max_by_key(|l| sums[*l as usize]).unwrap_or(Limb::Trunk)
+}
+
+/// Whether a triangle belongs to the thickness of a hem, which has no inner or outer side.
+fn is_edge(mesh: &Mesh, t: u32) -> bool {
+    let [a, b, c] = mesh.triangles[t as usize].map(|v| Vec3::from_array(mesh.normals[v as usize]));
+    a.dot(b).min(b.dot(c)).min(c.dot(a)) < EDGE_COS
 }
 
 /// Some triangles of a mesh with their own vertices.

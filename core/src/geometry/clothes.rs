@@ -7,7 +7,7 @@ use glam::Vec3;
 
 use super::body::{RestBody, SOLE_M};
 use super::cut::{Builder, Refined, Rim, Surface};
-use super::garment::{self, Cuts, Piece, Place, step};
+use super::garment::{self, Cuts, DEEP_M, Piece, Place, step};
 use super::layers::{self, Shell, raised};
 use super::person::{Evaluated, PartKind, Parts};
 use super::skirt::{self, Level, Skirt};
@@ -20,10 +20,6 @@ const COLLAR_M: f32 = 0.0045;
 const POCKET_M: f32 = 0.006;
 /// Thickness of a hood that lies on the back.
 const HOOD_M: f32 = 0.034;
-
-/// Cloth that lies deeper than this under another garment is left out: nobody looks so far into an
-/// opening, and what is not there cannot show through.
-const DEEP_M: f32 = 0.06;
 
 /// How far a piece stands off its cloth, and how far it is moved upwards, metres.
 type Rise<'a> = &'a dyn Fn(Place) -> [f32; 2];
@@ -52,14 +48,10 @@ impl Worn {
                 ease_m: 0.003 + 0.4 * cuts.bottom_m,
                 gap_m: None,
             };
-            let under = |i: usize| {
-                tucked_top.as_ref().map_or(shell.positions[i], |t| {
-                    if cuts.field(Piece::Top, shell.places[i]) > -0.01 {
-                        t[i]
-                    } else {
-                        shell.positions[i]
-                    }
-                })
+            let under = |i: usize| match &tucked_top {
+                Some(t) if cuts.field(Piece::Top, shell.places[i]) > -0.01 => t[i],
+                _ if cuts.field(Piece::Shoes, shell.places[i]) > -0.02 => feet.shoes[i],
+                _ => shell.positions[i],
             };
             Skirt::new(shell, &cut, &(0..shell.positions.len()).map(under).collect::<Vec<_>>())
         });
@@ -256,7 +248,7 @@ impl Cutter<'_> {
 
     /// How far a place is inside what of a piece may be seen.
     fn field(&self, piece: Piece, at: Place) -> f32 {
-        self.cuts.field(piece, at).min(DEEP_M - self.cuts.under(piece, at))
+        self.cuts.field(piece, at).min(self.cuts.deepest_m(piece, at))
     }
 
     /// The finest level follows the curve of a hem inside the shell's triangles.

@@ -24,6 +24,9 @@ const JACKET_Y: f32 = -0.004;
 /// Depth under a garment from which skin is never seen, by level of detail: less where skin and
 /// cloth follow each other less closely.
 const HIDDEN_M: [f32; LOD_COUNT] = [0.016, 0.016, 0.012, 0.006, 0.002];
+/// Cloth that lies deeper than this under another garment is left out: nobody looks so far into an
+/// opening, and what is not there cannot show through.
+pub(super) const DEEP_M: f32 = 0.06;
 /// How far skin under cloth is drawn inwards, by level of detail.
 const TUCK_M: [f32; LOD_COUNT] = [0.004, 0.004, 0.006, 0.010, 0.016];
 /// Lengths of arm and leg on the template.
@@ -166,14 +169,15 @@ impl Cuts {
         }
     }
 
-    /// How far a place is under the garments that are worn over a piece.
-    pub fn under(&self, piece: Piece, at: Place) -> f32 {
-        let outer = self.field(Piece::Outer, at);
+    /// How far a place is from where a piece lies too deep under others to be seen.
+    pub fn deepest_m(&self, piece: Piece, at: Place) -> f32 {
+        let outer = DEEP_M - self.field(Piece::Outer, at);
         match piece {
-            Piece::Bottom => outer.max(self.field(Piece::Top, at)),
-            Piece::Shoes if self.rests() => self.cuff(at).min(self.field(Piece::Bottom, at)),
+            // Trousers end only little above the top's hem.
+            Piece::Bottom => outer.min(0.6 * DEEP_M - self.field(Piece::Top, at)),
+            Piece::Shoes if self.rests() => DEEP_M - self.field(Piece::Bottom, at),
             Piece::Outer | Piece::OuterCollar | Piece::Shoes | Piece::Sole | Piece::Socks => {
-                NOT_WORN
+                f32::MAX
             }
             _ => outer,
         }

@@ -22,6 +22,9 @@ const GRID: [(usize, usize); 5] = [(16, 60), (11, 44), (7, 28), (5, 18), (3, 12)
 /// leg alone.
 const BETWEEN: f32 = 0.8;
 
+/// How much farther a skirt stands off at its hem than at its upper edge: legs bend in it.
+const LOWER_EASE_M: f32 = 0.012;
+
 /// What a skirt is like.
 pub(super) struct Cut {
     /// Upper edge, on the template.
@@ -100,13 +103,19 @@ impl Skirt {
 
     /// Lowest point of its hem, metres.
     pub fn hem_m(&self) -> f32 {
-        self.positions.iter().zip(&self.field).filter(|(_, f)| **f >= 0.0).map(|(q, _)| q.y).fold(f32::MAX, f32::min)
+        self.positions
+            .iter()
+            .zip(&self.field)
+            .filter(|(_, f)| **f >= 0.0)
+            .map(|(q, _)| q.y)
+            .fold(f32::MAX, f32::min)
     }
 
     /// Takes away what lies under another garment: what is higher than `end`, but for a gap in
     /// front of half the width `gap_m`.
     pub fn hide(&mut self, end: Level, gap_m: f32) {
-        let middle_z = self.positions.iter().map(|q| q.z).sum::<f32>() / self.positions.len() as f32;
+        let middle_z =
+            self.positions.iter().map(|q| q.z).sum::<f32>() / self.positions.len() as f32;
         for (q, f) in self.positions.iter().zip(&mut self.field) {
             let in_gap = if q.z > middle_z { gap_m - q.x.abs() } else { f32::MIN };
             *f = f.min((end.at(q.z) - q.y).max(in_gap));
@@ -236,7 +245,7 @@ fn rings(
             let radius = tube.spot(probe + half).radius.max(tube.spot(probe - half).radius);
             let radius = radius.max(spot.radius);
             let more = radius * chord - spot.own + ease_m + fold_m * wave;
-            let q = probe + spot.out * more;
+            let q = probe + spot.out * (more + LOWER_EASE_M * share);
             let front = cut.gap_m.map_or(f32::MAX, |gap| {
                 let apart = gap * (1.0 + 0.6 * share);
                 q.x.abs() - apart + if sin > 0.0 { 0.0 } else { 1.0 }
@@ -296,18 +305,17 @@ fn weights(shell: &Shell<'_>, positions: &[Vec3], columns: usize) -> Vec<SkinVer
 /// Means over neighbours on the rings and between them.
 fn soften(dense: &mut [[f32; CLOTH_JOINT_COUNT]], columns: usize) {
     let rows = dense.len() / columns;
-    for _ in 0..2 {
-        let before = dense.to_vec();
-        for row in 0..rows {
-            let (up, down) = (row.saturating_sub(1), (row + 1).min(rows - 1));
-            for k in 0..columns {
-                let at = |r: usize, k: usize| &before[r * columns + k % columns];
-                let five =
-                    [at(row, k), at(row, k + 1), at(row, k + columns - 1), at(up, k), at(down, k)];
-                for j in 0..CLOTH_JOINT_COUNT {
-                    let sum: f32 = five.iter().map(|w| w[j]).sum();
-                    dense[row * columns + k][j] = sum * 0.2;
-                }
+    // Once: the cloth must bend where the knees do.
+    let before = dense.to_vec();
+    for row in 0..rows {
+        let (up, down) = (row.saturating_sub(1), (row + 1).min(rows - 1));
+        for k in 0..columns {
+            let at = |r: usize, k: usize| &before[r * columns + k % columns];
+            let five =
+                [at(row, k), at(row, k + 1), at(row, k + columns - 1), at(up, k), at(down, k)];
+            for j in 0..CLOTH_JOINT_COUNT {
+                let sum: f32 = five.iter().map(|w| w[j]).sum();
+                dense[row * columns + k][j] = sum * 0.2;
             }
         }
     }

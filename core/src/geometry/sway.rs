@@ -37,17 +37,20 @@ pub fn beside(joint: usize, front: bool) -> usize {
 #[must_use]
 pub fn joints(skeleton: &PosedSkeleton, heads_m: &[DVec3; JOINT_COUNT]) -> [DAffine3; 4] {
     let hips_from_model = skeleton.model_from_rest[trunk::HIPS].inverse();
-    let mixed = |moved: Limb, end: Limb| {
+    let ahead_m = |side: Side, limb: Limb| {
+        let joint = side.joint(limb);
+        hips_from_model.transform_point3(skeleton.joint_m(joint, heads_m[joint])).z
+    };
+    let mixed = |moved: Limb, ends: &[Limb]| {
         let [left, right] = Side::BOTH.map(|side| {
-            let end = side.joint(end);
-            let ahead_m = hips_from_model.transform_point3(skeleton.joint_m(end, heads_m[end])).z;
-            (ahead_m, skeleton.model_from_rest[side.joint(moved)])
+            let sum: f64 = ends.iter().map(|end| ahead_m(side, *end)).sum();
+            (sum / ends.len() as f64, skeleton.model_from_rest[side.joint(moved)])
         });
         let share = (0.5 + 0.5 * (left.0 - right.0) / EVEN_M).clamp(0.0, 1.0);
         [share, 1.0 - share].map(|share| between(&right.1, &left.1, share))
     };
-    let [thigh_front, thigh_back] = mixed(Limb::UpLeg, Limb::Leg);
-    let [shin_front, shin_back] = mixed(Limb::Leg, Limb::Foot);
+    let [thigh_front, thigh_back] = mixed(Limb::UpLeg, &[Limb::Leg]);
+    let [shin_front, shin_back] = mixed(Limb::Leg, &[Limb::Leg, Limb::Foot]);
     [thigh_front, thigh_back, shin_front, shin_back]
 }
 
@@ -56,11 +59,7 @@ fn between(a: &DAffine3, b: &DAffine3, share: f64) -> DAffine3 {
     let mix = |a: DVec3, b: DVec3| a + (b - a) * share;
     let (m, n) = (&a.matrix3, &b.matrix3);
     DAffine3::from_mat3_translation(
-        DMat3::from_cols(
-            mix(m.x_axis, n.x_axis),
-            mix(m.y_axis, n.y_axis),
-            mix(m.z_axis, n.z_axis),
-        ),
+        DMat3::from_cols(mix(m.x_axis, n.x_axis), mix(m.y_axis, n.y_axis), mix(m.z_axis, n.z_axis)),
         mix(a.translation, b.translation),
     )
 }
