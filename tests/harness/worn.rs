@@ -33,7 +33,7 @@ const BEFORE_M: f32 = 0.05;
 const CELL_M: f32 = 0.06;
 /// Over an edge of cloth the normal turns by more than this: cosine.
 const EDGE_COS: f32 = 0.4;
-/// Edge of a cell of the body; trunk and limb are the same place in neighbouring ones only.
+/// Edge of a cell of the body at rest; neighbouring ones are the same place.
 const PLACE_M: f32 = 0.08;
 
 /// What lies over what, from the skin outwards.
@@ -152,11 +152,11 @@ struct Patch {
 }
 
 impl Patch {
-    /// Whether another is of the same limb, or near where the limb begins.
+    /// Whether another is at the same place of the body.
     fn is_beside(&self, other: &Self) -> bool {
         let near = self.place.iter().zip(&other.place).all(|(a, b)| (a - b).abs() <= 1);
         let trunk = self.limb == Limb::Trunk || other.limb == Limb::Trunk;
-        self.limb == other.limb || trunk && near
+        near && (trunk || self.limb == other.limb)
     }
 }
 

@@ -83,7 +83,7 @@ impl Worn {
     fn hide_skirt(&mut self, shell: &Shell<'_>, cuts: &Cuts) {
         let Some(skirt) = &mut self.skirt else { return };
         let gap_m: f32 = if cuts.open { 0.14 } else { 0.0 };
-        let from_hem = |y: f32| Level::find(shell, y + DEEP_M);
+        let from_hem = |y: f32| Level::find(shell, y + 0.8 * DEEP_M);
         if let Some(hem_y) = cuts.hem_over_skirt().and_then(from_hem) {
             skirt.hide(hem_y, 0.0);
         }
@@ -158,7 +158,10 @@ fn add_top(out: &mut Parts, cutter: &Cutter<'_>, worn: &Worn) {
             (Piece::Pocket, &|at| {
                 [POCKET_M * step(-0.01, 0.02, cuts.field(Piece::Pocket, at)), 0.0]
             }),
-            (Piece::Collar, &|at| collar_rise(cuts.neck(at.p))),
+            (Piece::Collar, &|at| {
+                let [off, up] = collar_rise(cuts.neck(at.p));
+                if cuts.wears(Piece::Outer) { [0.3 * off, 0.4 * up] } else { [off, up] }
+            }),
             (Piece::Hood, &|at| [hood_rise(cuts, at), 0.0]),
         ];
         for (piece, rise) in sewn {

@@ -26,7 +26,7 @@ const JACKET_Y: f32 = -0.004;
 const HIDDEN_M: [f32; LOD_COUNT] = [0.016, 0.016, 0.012, 0.006, 0.002];
 /// Cloth that lies deeper than this under another garment is left out: nobody looks so far into an
 /// opening, and what is not there cannot show through.
-pub(super) const DEEP_M: f32 = 0.06;
+pub(super) const DEEP_M: f32 = 0.045;
 /// How far skin under cloth is drawn inwards, by level of detail.
 const TUCK_M: [f32; LOD_COUNT] = [0.004, 0.004, 0.006, 0.010, 0.016];
 /// Lengths of arm and leg on the template.

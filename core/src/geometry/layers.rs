@@ -18,6 +18,8 @@ use crate::scene::{BottomKind, TopKind};
 const LAYER_M: f32 = 0.005;
 /// The same over a skirt, which follows the legs in another way.
 const OVER_SKIRT_M: f32 = 0.009;
+/// What a shirt's collar takes up under a jacket.
+const UNDER_COLLAR_M: f32 = 0.004;
 /// How far shoes stand off the foot.
 const SHOE_M: f32 = 0.009;
 /// Columns and rows of a tube, by level of detail.
@@ -318,7 +320,10 @@ pub(super) fn outer(
         .collect();
     let falls = Falls { trunk: 0.10, limb: 0.24 };
     drape_top(shell, &mut layer, skirt, falls, |_| 1.0);
-    shell.settle(&mut layer, &under, 2, |_| LAYER_M);
+    shell.settle(&mut layer, &under, 2, |i| {
+        let collar = step(-0.02, 0.0, cuts.field(Piece::Collar, shell.places[i]));
+        LAYER_M + UNDER_COLLAR_M * collar
+    });
     // What is over another layer's creases must not be under them.
     crease(shell, &mut layer, 0.0012 + 0.22 * cuts.outer_m.max(cuts.top_m));
     part_legs(&shell.places, &mut layer);

@@ -23,7 +23,7 @@ const GRID: [(usize, usize); 5] = [(16, 60), (11, 44), (7, 28), (5, 18), (3, 12)
 const BETWEEN: f32 = 0.8;
 
 /// How much farther a skirt stands off at its hem than at its upper edge: legs bend in it.
-const LOWER_EASE_M: f32 = 0.012;
+const LOWER_EASE_M: f32 = 0.018;
 
 /// What a skirt is like.
 pub(super) struct Cut {
