@@ -173,8 +173,8 @@ impl Cuts {
     pub fn deepest_m(&self, piece: Piece, at: Place) -> f32 {
         let outer = DEEP_M - self.field(Piece::Outer, at);
         match piece {
-            // Trousers end only little above the top's hem.
-            Piece::Bottom => outer.min(0.6 * DEEP_M - self.field(Piece::Top, at)),
+            // A close top shows little of the waist under it, even from below.
+            Piece::Bottom => outer.min(0.012 + 0.6 * self.top_m - self.field(Piece::Top, at)),
             Piece::Shoes if self.rests() => DEEP_M - self.field(Piece::Bottom, at),
             Piece::Outer | Piece::OuterCollar | Piece::Shoes | Piece::Sole | Piece::Socks => {
                 f32::MAX

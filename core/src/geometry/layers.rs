@@ -17,7 +17,7 @@ use crate::scene::{BottomKind, TopKind};
 /// Cloth that lies over another keeps this distance.
 const LAYER_M: f32 = 0.005;
 /// The same over a skirt, which follows the legs in another way.
-const OVER_SKIRT_M: f32 = 0.009;
+const OVER_SKIRT_M: f32 = 0.013;
 /// What a shirt's collar takes up under a jacket.
 const UNDER_COLLAR_M: f32 = 0.004;
 /// How far shoes stand off the foot.
