@@ -1,5 +1,6 @@
 //! Clothes of posed people cover what they should: what shows through them, in pictures.
 
+use std::collections::BTreeSet;
 use std::fmt::Write as _;
 use std::path::Path;
 use std::sync::Arc;
@@ -10,14 +11,14 @@ use figurant_core::draw::{Cast, DrawOptions, Drawn, draw};
 use figurant_core::engine::Engine;
 use figurant_core::engine::cpu::{CpuEngine, CpuOptions};
 use figurant_core::geometry::body::rest_body;
-use figurant_core::geometry::person::dress;
+use figurant_core::geometry::person::{Dressed, PartKind, dress};
 use figurant_core::job;
 use figurant_core::library::Library;
 use figurant_core::library::figure::LOD_COUNT;
 use figurant_core::plan::{Output, Outputs, PassPlan, SceneFacts, StageTimes};
 use figurant_core::sampling::Sampler;
 use figurant_core::scene::{Person, Scene};
-use figurant_tests::worn::{Flaw, Sorted};
+use figurant_tests::worn::{Flaw, Layer, Sorted};
 use glam::{DMat3, DQuat, DVec3, Vec3};
 
 /// Height and width of a picture, which one person fills.
@@ -41,8 +42,16 @@ fn options(shading: bool, lod_error_px: f64) -> DrawOptions {
     DrawOptions { raster: true, shading, samples, shadow_map_size, lod_error_px }
 }
 
-fn drawn(scene: &Scene, library: &Library, options: DrawOptions) -> Drawn {
-    draw(scene, library, &Cast::default(), &options).expect("a scene of built-in assets")
+/// What scenes are drawn from; nobody comes again after their own sitting.
+struct Stage<'a> {
+    library: &'a Library,
+    cast: Cast,
+}
+
+impl Stage<'_> {
+    fn drawn(&self, scene: &Scene, options: DrawOptions) -> Drawn {
+        draw(scene, self.library, &self.cast, &options).expect("a scene of built-in assets")
+    }
 }
 
 /// People of a preset, one by one.
@@ -65,13 +74,13 @@ fn sittings(preset: &str, library: &Library) -> Vec<Sitting> {
 }
 
 /// Turns and zooms the scene's camera until the person fills the picture.
-fn frame(scene: &mut Scene, library: &Library) {
+fn frame(scene: &mut Scene, stage: &Stage<'_>) {
     let camera = &mut scene.camera;
     (camera.width, camera.height, camera.fov_vertical_deg) = (SIDE, SIDE, 90.0);
     look_at(scene, scene.people[0].placement.position_m + DVec3::Y * 0.8);
     // Turning moves the box's middle a little.
     for _ in 0..3 {
-        let drawn = drawn(scene, library, options(false, 1e3));
+        let drawn = stage.drawn(scene, options(false, 1e3));
         let (low, high) = extent(&drawn);
         let camera = &mut scene.camera;
         let middle = (low + high) * 0.5;
@@ -108,20 +117,27 @@ fn extent(drawn: &Drawn) -> (DVec3, DVec3) {
     posed.fold((DVec3::MAX, DVec3::MIN), |(a, b), p| (a.min(p), b.max(p)))
 }
 
-/// The person at the level of detail that the program shows at this distance.
-fn measure(scene: &Scene, library: &Library, engine: &mut dyn Engine) -> Vec<Flaw> {
-    let seen = drawn(scene, library, options(false, 0.25));
+/// What shows through, at the level of detail that the program shows at this distance, once the
+/// mesh was changed.
+fn measure(
+    scene: &Scene,
+    stage: &Stage<'_>,
+    engine: &mut dyn Engine,
+    change: impl Fn(&mut Dressed),
+) -> Vec<Flaw> {
+    let (seen, library) = (stage.drawn(scene, options(false, 0.25)), stage.library);
     let person: &Person = &scene.people[0];
     let rest = rest_body(&library.figure, &person.body, &person.look.face).expect("its targets");
     let triangles = seen.list.objects[0].mesh.triangles.len();
     let mut levels = (0..LOD_COUNT).map(|lod| dress(&library.figure, person, &rest, lod));
-    let same = levels.find(|d| d.mesh.triangles.len() == triangles).expect("one of the levels");
+    let mut same = levels.find(|d| d.mesh.triangles.len() == triangles).expect("one of the levels");
+    change(&mut same);
     Sorted::new(&same, &person.outfit).flaws(engine, seen.list.view, &seen.list.palette, SPOT_PX)
 }
 
 /// Writes the picture of a person and, beside it, the same with its flaws marked.
-fn picture(scene: &Scene, library: &Library, flaws: &[Flaw], to: &Path) {
-    let seen = drawn(scene, library, options(true, 0.25));
+fn picture(scene: &Scene, stage: &Stage<'_>, flaws: &[Flaw], to: &Path) {
+    let seen = stage.drawn(scene, options(true, 0.25));
     let plan = PassPlan::new(&Outputs::from([Output::Rgb]), SceneFacts { sun_shadow: true });
     let mut engine = CpuEngine::default();
     let frame = engine.render(&seen.list, &plan, &mut StageTimes::default()).expect("it renders");
@@ -153,11 +169,12 @@ fn clothes_of_posed_people_cover_what_they_should() {
     let next = AtomicUsize::new(0);
     let work = || {
         let mut engine = CpuEngine::new(CpuOptions { threads: 1, ..CpuOptions::default() });
+        let stage = Stage { library: &library, cast: Cast::default() };
         let mut bad = Vec::new();
         while let Some(sitting) = all.get(next.fetch_add(1, Ordering::Relaxed)) {
             let mut scene = sitting.scene.clone();
-            frame(&mut scene, &library);
-            let flaws = measure(&scene, &library, &mut engine);
+            frame(&mut scene, &stage);
+            let flaws = measure(&scene, &stage, &mut engine, |_| ());
             if !flaws.is_empty() {
                 bad.push((sitting.name.clone(), scene, flaws));
             }
@@ -170,6 +187,7 @@ fn clothes_of_posed_people_cover_what_they_should() {
         workers.into_iter().flat_map(|w| w.join().expect("no panic")).collect::<Vec<_>>()
     });
     bad.sort_by(|a, b| (b.2[0].pixels, &a.0).cmp(&(a.2[0].pixels, &b.0)));
+    let stage = Stage { library: &library, cast: Cast::default() };
     let mut report = String::new();
     for (i, (name, scene, flaws)) in bad.iter().enumerate() {
         let person = &scene.people[0];
@@ -182,9 +200,38 @@ fn clothes_of_posed_people_cover_what_they_should() {
             );
         }
         if let Some(folder) = std::env::var_os("FIGURANT_FLAWS") {
-            picture(scene, &library, flaws, &Path::new(&folder).join(format!("{i:03}.png")));
+            picture(scene, &stage, flaws, &Path::new(&folder).join(format!("{i:03}.png")));
         }
     }
     println!("{} of {} people{report}", bad.len(), all.len());
     assert!(bad.len() * 100 <= all.len(), "{} of {}:{report}", bad.len(), all.len());
+}
+
+/// Moves all bare skin outwards.
+fn swell(dressed: &mut Dressed, by_m: f32) {
+    let skin = dressed.parts.iter().filter(|p| p.kind == PartKind::Skin);
+    let triangles = skin.flat_map(|p| p.triangles.clone());
+    let of_skin: BTreeSet<u32> =
+        triangles.flat_map(|t| dressed.mesh.triangles[t as usize]).collect();
+    let mesh = Arc::make_mut(&mut dressed.mesh);
+    for v in of_skin.into_iter().map(|v| v as usize) {
+        let moved = Vec3::from_array(mesh.positions[v]) + Vec3::from_array(mesh.normals[v]) * by_m;
+        mesh.positions[v] = moved.to_array();
+    }
+}
+
+#[test]
+fn skin_that_swells_through_the_clothes_is_found() {
+    let library = Library::new(&[], 64).expect("built-in assets load");
+    let stage = Stage { library: &library, cast: Cast::default() };
+    let mut engine = CpuEngine::default();
+    for sitting in sittings("starter", &library).iter_mut().take(6) {
+        frame(&mut sitting.scene, &stage);
+        let mut flaws = |by_m: f32| {
+            let found = measure(&sitting.scene, &stage, &mut engine, |d| swell(d, by_m));
+            found.iter().filter(|f| f.under == Layer::Skin).map(|f| f.pixels).sum::<usize>()
+        };
+        assert_eq!(flaws(0.0), 0, "{}", sitting.name);
+        assert!(flaws(0.018) > 60, "{}: {}", sitting.name, flaws(0.018));
+    }
 }
