@@ -220,18 +220,21 @@ fn swell(dressed: &mut Dressed, by_m: f32) {
     }
 }
 
+/// Under wide sleeves and under jackets there is room for it, so not with everybody.
 #[test]
 fn skin_that_swells_through_the_clothes_is_found() {
     let library = Library::new(&[], 64).expect("built-in assets load");
     let stage = Stage { library: &library, cast: Cast::default() };
     let mut engine = CpuEngine::default();
-    for sitting in sittings("starter", &library).iter_mut().take(6) {
+    let mut found = Vec::new();
+    for sitting in sittings("starter", &library).iter_mut().take(12) {
         frame(&mut sitting.scene, &stage);
         let mut flaws = |by_m: f32| {
-            let found = measure(&sitting.scene, &stage, &mut engine, |d| swell(d, by_m));
-            found.iter().filter(|f| f.under == Layer::Skin).map(|f| f.pixels).sum::<usize>()
+            let all = measure(&sitting.scene, &stage, &mut engine, |d| swell(d, by_m));
+            all.iter().filter(|f| f.under == Layer::Skin).map(|f| f.pixels).sum::<usize>()
         };
         assert_eq!(flaws(0.0), 0, "{}", sitting.name);
-        assert!(flaws(0.018) > 60, "{}: {}", sitting.name, flaws(0.018));
+        found.push(flaws(0.02));
     }
+    assert!(found.iter().filter(|pixels| **pixels > 100).count() >= 6, "{found:?}");
 }
