@@ -251,7 +251,8 @@ impl Cutter<'_> {
 
     /// How far a place is inside what of a piece may be seen.
     fn field(&self, piece: Piece, at: Place) -> f32 {
-        self.cuts.field(piece, at).min(self.cuts.deepest_m(piece, at))
+        let inside = self.cuts.field(piece, at);
+        if inside < 0.0 { inside } else { inside.min(self.cuts.deepest_m(piece, at)) }
     }
 
     /// The finest level follows the curve of a hem inside the shell's triangles.
