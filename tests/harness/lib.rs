@@ -5,3 +5,4 @@ pub mod drawlists;
 pub mod meshes;
 pub mod oracle;
 pub mod solid;
+pub mod worn;

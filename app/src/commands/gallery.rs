@@ -49,6 +49,9 @@ struct Picture {
     /// The instance to cut out; the whole frame if absent.
     #[serde(default)]
     person: Option<u16>,
+    /// What to cut out instead: left, top, width and height in pixels.
+    #[serde(default, rename = "crop_px")]
+    crop: Option<[u32; 4]>,
     #[serde(default)]
     caption: String,
 }
@@ -113,9 +116,14 @@ fn write_picture<M: FrameMaker>(
     };
     let made = maker.make(frame).map_err(|e| failed(&e))?;
     let stem = config.file_stem().map_or_else(|| "picture".into(), |s| s.to_string_lossy());
-    let (name, view) = match entry.person {
-        None => (format!("{stem}-{frame}.png"), whole(&made)),
-        Some(id) => {
+    let (name, view) = match (entry.crop, entry.person) {
+        (Some(crop), _) => {
+            let [x, y, w, h] = crop;
+            let view = within(whole(&made), crop).ok_or_else(|| failed(&outside(&made, crop)))?;
+            (format!("{stem}-{frame}-at-{x}-{y}-{w}-{h}.png"), view)
+        }
+        (None, None) => (format!("{stem}-{frame}.png"), whole(&made)),
+        (None, Some(id)) => {
             let view = person(&made, id).ok_or_else(|| failed(&no_person(&made, id)))?;
             (format!("{stem}-{frame}-{id}.png"), view)
         }
@@ -132,6 +140,17 @@ type View = [u32; 4];
 
 fn whole(made: &RenderedFrame) -> View {
     [0, 0, made.annotations.width, made.annotations.height]
+}
+
+/// A crop as a view, if it is not empty and lies within the picture.
+fn within([_, _, width, height]: View, [x, y, w, h]: [u32; 4]) -> Option<View> {
+    let (right, bottom) = (x.checked_add(w)?, y.checked_add(h)?);
+    (w > 0 && h > 0 && right <= width && bottom <= height).then_some([x, y, right, bottom])
+}
+
+fn outside(made: &RenderedFrame, crop: [u32; 4]) -> String {
+    let [_, _, width, height] = whole(made);
+    format!("crop_px {crop:?} does not lie within the picture, which is {width} by {height}")
 }
 
 /// A person's box with a margin, within the picture.
@@ -174,6 +193,15 @@ mod tests {
         let (pixels, size) = cut(&rgb, 4, [1, 1, 3, 3]);
         assert_eq!(size, [2, 2]);
         assert_eq!(pixels, [15, 16, 17, 18, 19, 20, 27, 28, 29, 30, 31, 32]);
+    }
+
+    #[test]
+    fn crops_lie_within_the_picture() {
+        let whole = [0, 0, 40, 30];
+        assert_eq!(within(whole, [10, 5, 30, 25]), Some([10, 5, 40, 30]));
+        for wrong in [[10, 5, 31, 25], [10, 6, 30, 25], [0, 0, 0, 9], [u32::MAX, 0, 2, 2]] {
+            assert_eq!(within(whole, wrong), None, "{wrong:?}");
+        }
     }
 
     #[test]

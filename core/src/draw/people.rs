@@ -17,6 +17,7 @@ use crate::geometry::pose::PosedSkeleton;
 use crate::geometry::skeleton::JOINT_COUNT;
 use crate::geometry::stance::Stance;
 use crate::geometry::surface::surface;
+use crate::geometry::sway;
 use crate::library::Library;
 use crate::library::figure::LOD_COUNT;
 use crate::library::pose::PREFIX;
@@ -197,7 +198,8 @@ fn add_mesh(
         });
     }
     let first = list.palette.len() as u32;
-    let bones = posed.skeleton.model_from_rest.iter();
+    let cloth = sway::joints(&posed.skeleton, &posed.body.heads_m);
+    let bones = posed.skeleton.model_from_rest.iter().chain(&cloth);
     list.palette.extend(bones.map(|m| rows(&(posed.view_from_model * *m))));
     list.objects.push(abi::DrawObject {
         mesh: Arc::clone(&dressed.mesh),

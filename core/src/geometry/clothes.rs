@@ -7,10 +7,10 @@ use glam::Vec3;
 
 use super::body::{RestBody, SOLE_M};
 use super::cut::{Builder, Refined, Rim, Surface};
-use super::garment::{self, Cuts, Piece, Place, step};
+use super::garment::{self, Cuts, DEEP_M, Piece, Place, step};
 use super::layers::{self, Shell, raised};
 use super::person::{Evaluated, PartKind, Parts};
-use super::skirt::{self, Skirt};
+use super::skirt::{self, Level, Skirt};
 use crate::library::figure::{Figure, GroupId};
 use crate::scene::{BottomKind, ShoeKind};
 
@@ -48,14 +48,10 @@ impl Worn {
                 ease_m: 0.003 + 0.4 * cuts.bottom_m,
                 gap_m: None,
             };
-            let under = |i: usize| {
-                tucked_top.as_ref().map_or(shell.positions[i], |t| {
-                    if cuts.field(Piece::Top, shell.places[i]) > -0.01 {
-                        t[i]
-                    } else {
-                        shell.positions[i]
-                    }
-                })
+            let under = |i: usize| match &tucked_top {
+                Some(t) if cuts.field(Piece::Top, shell.places[i]) > -0.01 => t[i],
+                _ if cuts.field(Piece::Shoes, shell.places[i]) > -0.02 => feet.shoes[i],
+                _ => shell.positions[i],
             };
             Skirt::new(shell, &cut, &(0..shell.positions.len()).map(under).collect::<Vec<_>>())
         });
@@ -81,6 +77,21 @@ impl Worn {
             Skirt::new(shell, &cut, &under)
         });
         Self { bottom, top, skirt, outer, coat, feet }
+    }
+
+    /// Takes away what of a skirt lies under a top or an outer garment.
+    fn hide_skirt(&mut self, shell: &Shell<'_>, cuts: &Cuts) {
+        let Some(skirt) = &mut self.skirt else { return };
+        let gap_m: f32 = if cuts.open { 0.14 } else { 0.0 };
+        let from_hem = |y: f32| Level::find(shell, y + 0.8 * DEEP_M);
+        if let Some(hem_y) = cuts.hem_over_skirt().and_then(from_hem) {
+            skirt.hide(hem_y, 0.0);
+        }
+        match (&self.coat, cuts.jacket_hem().and_then(from_hem)) {
+            (Some(coat), _) => skirt.hide(Level::flat(coat.hem_m() + DEEP_M), gap_m.max(0.06)),
+            (None, Some(end)) => skirt.hide(end, gap_m),
+            (None, None) => {}
+        }
     }
 }
 
@@ -109,7 +120,8 @@ pub(super) fn add(out: &mut Parts, figure: &Figure, rest: &RestBody, cuts: &Cuts
     let places = garment::places(figure, GroupId::Shell, body.positions.len() as u32);
     let on = (&body.positions[..], &body.normals[..]);
     let shell = Shell::new(figure, lod, on, places, &rest.heads_m);
-    let worn = Worn::new(&shell, cuts);
+    let mut worn = Worn::new(&shell, cuts);
+    worn.hide_skirt(&shell, cuts);
     let cutter = Cutter { body: &body, shell: &shell, cuts, lod };
 
     add_bottom(out, &cutter, &worn);
@@ -146,7 +158,10 @@ fn add_top(out: &mut Parts, cutter: &Cutter<'_>, worn: &Worn) {
             (Piece::Pocket, &|at| {
                 [POCKET_M * step(-0.01, 0.02, cuts.field(Piece::Pocket, at)), 0.0]
             }),
-            (Piece::Collar, &|at| collar_rise(cuts.neck(at.p))),
+            (Piece::Collar, &|at| {
+                let [off, up] = collar_rise(cuts.neck(at.p));
+                if cuts.wears(Piece::Outer) { [0.3 * off, 0.4 * up] } else { [off, up] }
+            }),
             (Piece::Hood, &|at| [hood_rise(cuts, at), 0.0]),
         ];
         for (piece, rise) in sewn {
@@ -213,7 +228,7 @@ fn add_feet(out: &mut Parts, cutter: &Cutter<'_>, worn: &Worn) {
     for (kind, piece, layer, sign, rim) in parts {
         let edge = worn.feet.shoes.iter().map(|p| sign * (p.y - edge_m));
         let field: Vec<f32> =
-            shell.places.iter().zip(edge).map(|(at, e)| cuts.field(piece, *at).min(e)).collect();
+            shell.places.iter().zip(edge).map(|(at, e)| cutter.field(piece, *at).min(e)).collect();
         let range = out.builder.add_cut(&cutter.body.with(layer, &normals), &field, rim);
         out.add(kind, range, true);
     }
@@ -234,6 +249,12 @@ impl Cutter<'_> {
         (self.lod < 3).then_some(Rim { thickness_m, round: self.lod < 1 })
     }
 
+    /// How far a place is inside what of a piece may be seen.
+    fn field(&self, piece: Piece, at: Place) -> f32 {
+        let inside = self.cuts.field(piece, at);
+        if inside < 0.0 { inside } else { inside.min(self.cuts.deepest_m(piece, at)) }
+    }
+
     /// The finest level follows the curve of a hem inside the shell's triangles.
     fn cut(
         &self,
@@ -242,15 +263,15 @@ impl Cutter<'_> {
         layer: &[Vec3],
         rim: Option<Rim>,
     ) -> std::ops::Range<u32> {
-        let (shell, cuts) = (self.shell, self.cuts);
-        let field: Vec<f32> = shell.places.iter().map(|at| cuts.field(piece, *at)).collect();
+        let shell = self.shell;
+        let field: Vec<f32> = shell.places.iter().map(|at| self.field(piece, *at)).collect();
         let normals = layers::normals_of(shell, layer);
         let whole: Surface<'_> = self.body.with(layer, &normals);
         if self.lod > 0 {
             return builder.add_cut(&whole, &field, rim);
         }
         let between = |a: usize, b: usize| {
-            cuts.field(piece, Place::between(shell.places[a], shell.places[b]))
+            self.field(piece, Place::between(shell.places[a], shell.places[b]))
         };
         let fine = Refined::new(&whole, &field, between);
         builder.add_cut(&fine.surface(), fine.field(), rim)

@@ -19,9 +19,14 @@ const SKIRT_Y: f32 = 0.115;
 const DRESS_Y: f32 = 0.150;
 /// Where the shell's part of a coat ends and its skirt begins.
 const COAT_Y: f32 = 0.120;
+/// Lower edge of jackets.
+const JACKET_Y: f32 = -0.004;
 /// Depth under a garment from which skin is never seen, by level of detail: less where skin and
 /// cloth follow each other less closely.
 const HIDDEN_M: [f32; LOD_COUNT] = [0.016, 0.016, 0.012, 0.006, 0.002];
+/// Cloth that lies deeper than this under another garment is left out: nobody looks so far into an
+/// opening, and what is not there cannot show through.
+pub(super) const DEEP_M: f32 = 0.045;
 /// How far skin under cloth is drawn inwards, by level of detail.
 const TUCK_M: [f32; LOD_COUNT] = [0.004, 0.004, 0.006, 0.010, 0.016];
 /// Lengths of arm and leg on the template.
@@ -164,6 +169,35 @@ impl Cuts {
         }
     }
 
+    /// How far a place is from where a piece lies too deep under others to be seen.
+    pub fn deepest_m(&self, piece: Piece, at: Place) -> f32 {
+        let outer = DEEP_M - self.field(Piece::Outer, at);
+        match piece {
+            // A close top shows little of the waist under it, even from below.
+            Piece::Bottom => outer.min(0.012 + 0.6 * self.top_m - self.field(Piece::Top, at)),
+            Piece::Shoes if self.rests() => DEEP_M - self.field(Piece::Bottom, at),
+            Piece::Outer | Piece::OuterCollar | Piece::Shoes | Piece::Sole | Piece::Socks => {
+                f32::MAX
+            }
+            _ => outer,
+        }
+    }
+
+    /// Whether trousers reach the ankle and fall over the shoes.
+    pub fn rests(&self) -> bool {
+        !self.bottom.is_skirt() && self.bottom != BottomKind::Leggings && self.leg_end > 0.9
+    }
+
+    /// Lower edge, on the template, of a top that is worn over a skirt.
+    pub fn hem_over_skirt(&self) -> Option<f32> {
+        (self.bottom.is_skirt() && !self.tucked()).then(|| self.hem_y())
+    }
+
+    /// Lower edge of a jacket, on the template.
+    pub fn jacket_hem(&self) -> Option<f32> {
+        (self.outer == OuterKind::Jacket).then_some(JACKET_Y)
+    }
+
     /// How far from any opening: not to be seen from there is also what lies under two garments.
     fn depth(&self, at: Place) -> f32 {
         // Top and trousers close each other's opening at the waist; wide ones can be looked into.
@@ -199,7 +233,11 @@ impl Cuts {
 
     /// Lower edge of the top.
     fn hem(&self, at: Place) -> f32 {
-        let y = if self.tucked() {
+        at.p.y - self.hem_y() + on_arm(at)
+    }
+
+    fn hem_y(&self) -> f32 {
+        if self.tucked() {
             // Under the skirt's edge.
             if self.bottom.is_dress() { DRESS_Y - 0.05 } else { SKIRT_Y - 0.05 }
         } else {
@@ -208,8 +246,7 @@ impl Cuts {
                 TopKind::Sweater | TopKind::Hoodie => 0.012,
                 _ => 0.016,
             }
-        };
-        at.p.y - y + on_arm(at)
+        }
     }
 
     fn sleeve_end(&self, at: Place) -> f32 {
@@ -250,7 +287,7 @@ impl Cuts {
     }
 
     fn outer(&self, at: Place) -> f32 {
-        let y = if self.outer == OuterKind::Coat { COAT_Y - 0.05 } else { -0.004 };
+        let y = if self.outer == OuterKind::Coat { COAT_Y - 0.05 } else { JACKET_Y };
         let hem = at.p.y - y + on_arm(at);
         hem.min((0.985 - at.arm) * ARM_M).min(self.outer_neck(at.p)).min(self.front_gap(at.p))
     }

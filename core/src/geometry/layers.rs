@@ -16,6 +16,10 @@ use crate::scene::{BottomKind, TopKind};
 
 /// Cloth that lies over another keeps this distance.
 const LAYER_M: f32 = 0.005;
+/// The same over a skirt, which follows the legs in another way.
+const OVER_SKIRT_M: f32 = 0.013;
+/// What a shirt's collar takes up under a jacket.
+const UNDER_COLLAR_M: f32 = 0.004;
 /// How far shoes stand off the foot.
 const SHOE_M: f32 = 0.009;
 /// Columns and rows of a tube, by level of detail.
@@ -283,6 +287,7 @@ pub(super) fn top(
     });
     crease(shell, &mut layer, 0.0010 + 0.22 * cuts.top_m);
     part_legs(&shell.places, &mut layer);
+    keep_over_skirt(shell, &mut layer, skirt);
     layer
 }
 
@@ -315,11 +320,34 @@ pub(super) fn outer(
         .collect();
     let falls = Falls { trunk: 0.10, limb: 0.24 };
     drape_top(shell, &mut layer, skirt, falls, |_| 1.0);
-    shell.settle(&mut layer, &under, 2, |_| LAYER_M);
+    shell.settle(&mut layer, &under, 2, |i| {
+        let collar = step(-0.02, 0.0, cuts.field(Piece::Collar, shell.places[i]));
+        LAYER_M + UNDER_COLLAR_M * collar
+    });
     // What is over another layer's creases must not be under them.
     crease(shell, &mut layer, 0.0012 + 0.22 * cuts.outer_m.max(cuts.top_m));
     part_legs(&shell.places, &mut layer);
+    keep_over_skirt(shell, &mut layer, skirt);
     layer
+}
+
+/// Keeps what is worn over a skirt outside it, down to the hips.
+fn keep_over_skirt(shell: &Shell<'_>, layer: &mut [Vec3], skirt: &[Vec3]) {
+    const REACH_M: f32 = 0.16;
+    let low = shell.head(0).y - REACH_M;
+    let upper = skirt.iter().filter(|q| q.y > low).copied();
+    let (rows, columns) = TUBE[shell.lod];
+    let line = (shell.head(0), Vec3::NEG_Y);
+    let Some(tube) = Tube::new(line, Vec3::Z, (rows / 2, columns), upper.clone()) else { return };
+    let top = upper.map(|q| q.y).fold(f32::MIN, f32::max);
+    for (q, at) in layer.iter_mut().zip(&shell.places) {
+        // Between the legs there is no outside.
+        if at.arm > 0.02 || at.p.y < -0.04 || q.y > top + 0.02 || q.y < low {
+            continue;
+        }
+        let spot = tube.spot(*q);
+        *q += spot.out * (spot.radius + OVER_SKIRT_M - spot.own).max(0.0);
+    }
 }
 
 /// Share of its looseness by which cloth stands off: it rests on the shoulders and on what is

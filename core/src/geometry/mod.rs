@@ -14,6 +14,7 @@
 //! | `clothes`, `layers`, `drape`, `skirt` | how garments hang, one over the other |
 //! | `hair`, `beard`, `headwear`, `glasses` | what grows and sits on the head |
 //! | [`skeleton`], [`pose`] | joints, and clips and poses retargeted to a body |
+//! | [`sway`] | joints of cloth that hangs round both legs |
 //! | [`stance`], `hand` | what joints and fingers are to do |
 //! | [`trunk`], `settle` | keep arms out of trunks, lay bodies on the ground |
 //! | [`points`] | poses single vertices in double precision |
@@ -41,4 +42,5 @@ mod skirt;
 mod solve;
 pub mod stance;
 pub mod surface;
+pub mod sway;
 pub mod trunk;

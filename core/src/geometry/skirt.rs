@@ -1,24 +1,29 @@
 //! Skirts: rings of cloth round both legs, from the waist downwards.
 //!
 //! Each ring is the convex hull of what it goes round, so no leg is outside at rest. It moves with
-//! the legs: in front of a leg with that leg, between the legs with both in proportion, which is
-//! how cloth spans them in a stride. Tops and trousers are not known here.
+//! the legs: beside a leg with that leg, between the legs with the one that is ahead in front and
+//! with the other one behind, which is how cloth spans them in a stride. Tops and trousers are not
+//! known here.
 
 use glam::Vec3;
 
 use super::cut::{Builder, Rim, Surface, smooth_normals};
 use super::drape::Tube;
 use super::layers::Shell;
-use super::skeleton::{JOINT_COUNT, Limb, Side};
+use super::skeleton::{Limb, Side};
+use super::sway::{self, CLOTH_JOINT_COUNT};
 use crate::library::figure::GroupId;
 use crate::library::mesh::SkinVertex;
 
 /// Rows and columns by level of detail.
 const GRID: [(usize, usize); 5] = [(16, 60), (11, 44), (7, 28), (5, 18), (3, 12)];
 
-/// Share of the way between the legs in which the cloth goes over from one to the other: less
-/// than all of it, since a leg that is ahead bulges inwards of its middle.
-const BETWEEN: f32 = 0.45;
+/// Share of the way from between the legs to the middle of one from which the cloth goes with that
+/// leg alone.
+const BETWEEN: f32 = 0.8;
+
+/// How much farther a skirt stands off at its hem than at its upper edge: legs bend in it.
+const LOWER_EASE_M: f32 = 0.018;
 
 /// What a skirt is like.
 pub(super) struct Cut {
@@ -96,6 +101,27 @@ impl Skirt {
         self.triangles.chunks_exact(3).map(|t| [t[0], t[1], t[2]].map(corner)).collect()
     }
 
+    /// Lowest point of its hem, metres.
+    pub fn hem_m(&self) -> f32 {
+        self.positions
+            .iter()
+            .zip(&self.field)
+            .filter(|(_, f)| **f >= 0.0)
+            .map(|(q, _)| q.y)
+            .fold(f32::MAX, f32::min)
+    }
+
+    /// Takes away what lies under another garment: what is higher than `end`, but for a gap in
+    /// front of half the width `gap_m`.
+    pub fn hide(&mut self, end: Level, gap_m: f32) {
+        let middle_z =
+            self.positions.iter().map(|q| q.z).sum::<f32>() / self.positions.len() as f32;
+        for (q, f) in self.positions.iter().zip(&mut self.field) {
+            let in_gap = if q.z > middle_z { gap_m - q.x.abs() } else { f32::MIN };
+            *f = f.min((end.at(q.z) - q.y).max(in_gap));
+        }
+    }
+
     /// Adds it to a mesh, with a rim at its edges.
     pub fn add(&self, builder: &mut Builder, rim: Option<Rim>) -> std::ops::Range<u32> {
         let surface = Surface {
@@ -110,21 +136,22 @@ impl Skirt {
     }
 }
 
-/// Where a skirt begins and ends on a person. The upper edge is a plane that leans forwards or
-/// backwards as the person's waist does.
-struct Heights {
-    /// Height of the upper edge at z = 0, and its rise along z.
-    top: [f32; 2],
-    hem_y: f32,
+/// A plane round the trunk that leans forwards or backwards as the person's waist does.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Level {
+    /// Height at z = 0, metres.
+    y: f32,
+    /// Its rise along z.
+    rise: f32,
 }
 
-impl Heights {
-    fn find(shell: &Shell<'_>, cut: &Cut) -> Option<Self> {
-        // A straight line through the heights of the vertices near the template's ring.
+impl Level {
+    /// A straight line through the heights of the vertices near the template's ring.
+    pub fn find(shell: &Shell<'_>, template_y: f32) -> Option<Self> {
         let (mut n, mut sz, mut sy, mut szz, mut szy) = (0.0f32, 0.0f32, 0.0f32, 0.0f32, 0.0f32);
         let scale = shell.heads_m[0].y as f32 / 0.9;
         for (p, at) in shell.positions.iter().zip(&shell.places) {
-            let above = at.p.y - cut.top_y;
+            let above = at.p.y - template_y;
             if at.arm > 0.0 || above.abs() > 0.035 {
                 continue;
             }
@@ -136,13 +163,36 @@ impl Heights {
         }
         let spread = (n * szz - sz * sz).max(1e-9);
         let rise = ((n * szy - sz * sy) / spread).clamp(-0.6, 0.6);
+        Some(Self { y: (sy - rise * sz) / n, rise })
+    }
+
+    /// One that is level.
+    pub const fn flat(y: f32) -> Self {
+        Self { y, rise: 0.0 }
+    }
+
+    /// Height, metres.
+    pub fn at(&self, z: f32) -> f32 {
+        self.y + self.rise * z
+    }
+}
+
+/// Where a skirt begins and ends on a person.
+struct Heights {
+    top: Level,
+    hem_y: f32,
+}
+
+impl Heights {
+    fn find(shell: &Shell<'_>, cut: &Cut) -> Option<Self> {
+        let top = Level::find(shell, cut.top_y)?;
         let leg = |joint| shell.heads_m[Side::Left.joint(joint)].y as f32;
         let (hip, ankle) = (leg(Limb::UpLeg), leg(Limb::Foot));
-        Some(Self { top: [(sy - rise * sz) / n, rise], hem_y: hip + (ankle - hip) * cut.leg_end })
+        Some(Self { top, hem_y: hip + (ankle - hip) * cut.leg_end })
     }
 
     fn top_y(&self, z: f32) -> f32 {
-        self.top[0] + self.top[1] * z
+        self.top.at(z)
     }
 }
 
@@ -156,7 +206,7 @@ fn rings(
 ) -> Option<(Vec<Vec3>, Vec<f32>)> {
     let middle_z = shell.heads_m[0].z as f32;
     let reach = heights.top_y(middle_z) - heights.hem_y;
-    let tilt = 0.15 * heights.top[1].abs() + 0.02;
+    let tilt = 0.15 * heights.top.rise.abs() + 0.02;
     let (low, high) = (heights.hem_y - 0.1 * reach, heights.top_y(middle_z) + tilt);
     let points = under
         .iter()
@@ -195,7 +245,7 @@ fn rings(
             let radius = tube.spot(probe + half).radius.max(tube.spot(probe - half).radius);
             let radius = radius.max(spot.radius);
             let more = radius * chord - spot.own + ease_m + fold_m * wave;
-            let q = probe + spot.out * more;
+            let q = probe + spot.out * (more + LOWER_EASE_M * share);
             let front = cut.gap_m.map_or(f32::MAX, |gap| {
                 let apart = gap * (1.0 + 0.6 * share);
                 q.x.abs() - apart + if sin > 0.0 { 0.0 } else { 1.0 }
@@ -208,7 +258,8 @@ fn rings(
 }
 
 /// Joints and weights: those of the nearest places of the shell on the left and on the right, in
-/// proportion to how far the point is on either side between the legs.
+/// proportion to how far the point is on either side between the legs; the rest goes to the joints
+/// that follow the leg ahead or the leg behind.
 fn weights(shell: &Shell<'_>, positions: &[Vec3], columns: usize) -> Vec<SkinVertex> {
     let skin =
         &shell.figure.skin()[shell.figure.vertices(GroupId::Shell, shell.positions.len() as u32)];
@@ -223,9 +274,11 @@ fn weights(shell: &Shell<'_>, positions: &[Vec3], columns: usize) -> Vec<SkinVer
         let t = ((hip.y - y) / (hip.y - ankle.y)).clamp(0.0, 1.0);
         let leg_x = (hip.x + (ankle.x - hip.x) * t).abs().max(0.02);
         for q in ring {
-            let left = 0.5 + 0.5 * (q.x / (BETWEEN * leg_x)).clamp(-1.0, 1.0);
-            let mut sum = [0.0f32; JOINT_COUNT];
-            for (side, share) in [(1.0f32, left), (-1.0, 1.0 - left)] {
+            let beside = (q.x / (BETWEEN * leg_x)).clamp(-1.0, 1.0);
+            let front = q.z > hip.z + (ankle.z - hip.z) * t;
+            let mut sum = [0.0f32; CLOTH_JOINT_COUNT];
+            for side in [1.0f32, -1.0] {
+                let (own_share, shared) = ((beside * side).max(0.0), 0.5 - 0.5 * beside.abs());
                 let own = |i: &&usize| shell.positions[**i].x * side > -0.002;
                 let distance = |i: &usize| (shell.positions[*i] - *q).length_squared();
                 let nearest = near
@@ -234,10 +287,12 @@ fn weights(shell: &Shell<'_>, positions: &[Vec3], columns: usize) -> Vec<SkinVer
                     .min_by(|a, b| distance(a).total_cmp(&distance(b)).then(a.cmp(b)));
                 if let Some(&i) = nearest {
                     for (&j, &w) in skin[i].joints.iter().zip(&skin[i].weights) {
-                        sum[usize::from(j)] += share * f32::from(w);
+                        let (j, w) = (usize::from(j), f32::from(w));
+                        sum[j] += own_share * w;
+                        sum[sway::beside(j, front)] += shared * w;
                     }
                 } else {
-                    sum[0] += share * 255.0;
+                    sum[0] += (own_share + shared) * 255.0;
                 }
             }
             dense.push(sum);
@@ -248,27 +303,26 @@ fn weights(shell: &Shell<'_>, positions: &[Vec3], columns: usize) -> Vec<SkinVer
 }
 
 /// Means over neighbours on the rings and between them.
-fn soften(dense: &mut [[f32; JOINT_COUNT]], columns: usize) {
+fn soften(dense: &mut [[f32; CLOTH_JOINT_COUNT]], columns: usize) {
     let rows = dense.len() / columns;
-    for _ in 0..2 {
-        let before = dense.to_vec();
-        for row in 0..rows {
-            let (up, down) = (row.saturating_sub(1), (row + 1).min(rows - 1));
-            for k in 0..columns {
-                let at = |r: usize, k: usize| &before[r * columns + k % columns];
-                let five =
-                    [at(row, k), at(row, k + 1), at(row, k + columns - 1), at(up, k), at(down, k)];
-                for j in 0..JOINT_COUNT {
-                    let sum: f32 = five.iter().map(|w| w[j]).sum();
-                    dense[row * columns + k][j] = sum * 0.2;
-                }
+    // Once: the cloth must bend where the knees do.
+    let before = dense.to_vec();
+    for row in 0..rows {
+        let (up, down) = (row.saturating_sub(1), (row + 1).min(rows - 1));
+        for k in 0..columns {
+            let at = |r: usize, k: usize| &before[r * columns + k % columns];
+            let five =
+                [at(row, k), at(row, k + 1), at(row, k + columns - 1), at(up, k), at(down, k)];
+            for j in 0..CLOTH_JOINT_COUNT {
+                let sum: f32 = five.iter().map(|w| w[j]).sum();
+                dense[row * columns + k][j] = sum * 0.2;
             }
         }
     }
 }
 
-fn four_largest(dense: &[f32; JOINT_COUNT]) -> SkinVertex {
-    let mut order: Vec<usize> = (0..JOINT_COUNT).filter(|&j| dense[j] > 0.0).collect();
+fn four_largest(dense: &[f32; CLOTH_JOINT_COUNT]) -> SkinVertex {
+    let mut order: Vec<usize> = (0..CLOTH_JOINT_COUNT).filter(|&j| dense[j] > 0.0).collect();
     order.sort_by(|&a, &b| dense[b].total_cmp(&dense[a]).then(a.cmp(&b)));
     order.truncate(4);
     let sum: f32 = order.iter().map(|&j| dense[j]).sum();
