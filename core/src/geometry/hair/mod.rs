@@ -190,7 +190,7 @@ impl Grower<'_> {
         }
         if self.style == HairStyle::Balding {
             let here = style::wreath(root.local);
-            thick = thick * here - 0.0015 * (1.0 - here);
+            thick = thick * here * here - 0.0012 * (1.0 - here);
         }
         if let Some(edge) = self.head.brim_y(root.local) {
             // Pressed flat under a hat, and bulging less just below it.
@@ -331,12 +331,15 @@ impl Grower<'_> {
                 let phase = 3.0 * root.column / COLUMNS as f32 + apart * dice.unit();
                 path.curl(radius, turn * s * (1.0 + apart * dice.range(-0.2, 0.25)), phase);
             }
+            // Hair that is drawn tight lies flat from its roots on.
+            let (at_root, tilt) = if locks.clings > 0.9 { (0.25, 0.12) } else { (0.6, 0.35) };
             let ribbon = Ribbon {
                 width_m: locks.width_m * s * wide * dice.range(0.65, 1.35),
-                root: 0.6,
-                tilt: dice.range(-0.35, 0.35),
+                root: at_root,
+                tilt: dice.range(-tilt, tilt),
                 round: 0.55,
                 u: dice.unit() * 4.0,
+                tuft: locks.tuft,
             };
             ribbon.add(mesh, &path, &skin);
         }
@@ -349,9 +352,9 @@ impl Grower<'_> {
             return 0.0;
         }
         match self.style {
-            HairStyle::Balding => step(0.5, 0.9, style::wreath(root.local)),
+            HairStyle::Balding => step(0.25, 0.8, style::wreath(root.local)),
             // So short that ends beyond the border would be specks.
-            HairStyle::Cropped => step(0.003, 0.009, root.depth),
+            HairStyle::Cropped | HairStyle::CrewCut => step(0.003, 0.009, root.depth),
             // Ends at the hairline frame the face.
             HairStyle::Short
             | HairStyle::Pixie
