@@ -282,7 +282,9 @@ impl Grower<'_> {
             + s * locks.layer_m * higher;
         let pressed = self.head.brim_y(root.local).is_some();
         let end_m = if pressed { end_m.min(0.012 * s) } else { end_m };
-        let start = (cap - 0.002 * s).max(0.0);
+        // Long locks come out at once, or the cap would show bare along the hairline.
+        let sunk = if matches!(locks.length, Length::Between(..)) { 0.002 } else { 0.0 };
+        let start = (cap - sunk * s).max(0.0);
         match locks.length {
             Length::Between(low, high) => {
                 // Cut shorter at the nape.
@@ -297,12 +299,12 @@ impl Grower<'_> {
             }
             Length::Down(y, spread) => {
                 let y = y + spread * dice.range(-1.0, 1.0);
-                let clear = |way: f32| start + (end_m - start) * step(0.0, 0.08 * s, way);
+                let clear = |way: f32| start + (end_m - start) * step(0.0, 0.028 * s, way);
                 comb.line(root, (start, 0.018 * s), |_, l| l.y < y, clear)
             }
             Length::ToTie => {
                 let near = |l: Vec3| (l - tie).length() < 0.016;
-                let clear = |way: f32| start + (end_m - start) * step(0.0, 0.05 * s, way);
+                let clear = |way: f32| start + (end_m - start) * step(0.0, 0.022 * s, way);
                 comb.line(root, (start, 0.012 * s), |_, l| near(l), clear)
             }
         }
