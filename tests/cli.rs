@@ -10,6 +10,7 @@ use std::path::{Path, PathBuf};
 
 use figurant::road::{Job, LoadError, Road, Simd, Wishes};
 use figurant::{Console, Exit, Stop};
+use figurant_core::document::cast::Member;
 use figurant_core::export::{DatasetInfo, PictureFormat};
 use figurant_core::job::{FrameMaker, RenderedFrame};
 use figurant_core::label::annotation::{
@@ -75,9 +76,11 @@ impl FrameMaker for Painter {
                 age_years: 30.0,
                 sex: Sex::Male,
                 stature_m: 1.8,
+                bmi_kg_m2: 24.0,
                 mass_kg: None,
                 garments: vec![],
                 identity: None,
+                name: None,
                 activity: "standing".to_owned(),
                 clip: "stand".to_owned(),
                 pose: String::new(),
@@ -160,6 +163,15 @@ impl Road for Atelier {
             return Ok(Self::job(&value, wishes));
         }
         Err(LoadError::Invalid(unknown.iter().map(|key| format!("{key}: no such field")).collect()))
+    }
+
+    fn people(&self, job: &Job<Value>, frame: Option<u32>) -> Result<Vec<(u32, Member)>, String> {
+        let name = |name: &str| Member { name: Some(name.to_owned()), ..Member::default() };
+        match frame {
+            Some(frame) => Ok(vec![(2, name(&format!("in_{frame}_of_{}", job.info.seed)))]),
+            None if job.document["brush"] == false => Err("nobody recurs".to_owned()),
+            None => Ok(vec![(0, name("maria")), (1, Member::default()), (2, name("otto"))]),
+        }
     }
 
     fn starter(&self, wishes: &Wishes) -> Result<Job<Value>, LoadError> {
@@ -423,6 +435,54 @@ fn a_frame_is_written_with_and_without_overlay() {
     );
     let desk = Desk::new(&json!({"fails": [7]}));
     assert_eq!(desk.run("frame @c.json --frame 7 --out @a.png").exit, Exit::SomeFailed);
+}
+
+#[test]
+fn people_are_written_to_a_file_or_a_folder() {
+    let desk = desk();
+    let ran = desk.run("people @c.json --out @all.json");
+    assert_eq!((ran.exit, ran.out.as_str()), (Exit::Done, ""), "{}", ran.err);
+    assert!(ran.err.contains("3 people") && ran.err.contains("\"cast\""), "{}", ran.err);
+    assert_eq!(desk.json("all.json"), json!([{"name": "maria"}, {}, {"name": "otto"}]));
+    assert_eq!(desk.run("people @c.json --out @one.json --person 2").exit, Exit::Done);
+    assert_eq!(desk.json("one.json"), json!({"name": "otto"}));
+    let ran = desk.run("people @c.json --out @f.json --frame 5 --seed 9");
+    assert_eq!(ran.exit, Exit::Done, "{}", ran.err);
+    assert_eq!(desk.json("f.json"), json!({"name": "in_5_of_9"}));
+    assert_eq!(desk.run("people @c.json --out @some/folder").exit, Exit::Done);
+    for (file, expected) in [
+        ("0000-maria.json", json!({"name": "maria"})),
+        ("0001.json", json!({})),
+        ("0002-otto.json", json!({"name": "otto"})),
+    ] {
+        assert_eq!(desk.json(&format!("some/folder/{file}")), expected);
+    }
+}
+
+#[test]
+fn people_that_cannot_be_written_say_why() {
+    let desk = desk();
+    fs::write(desk.path("mine.json"), "edited").unwrap();
+    fs::create_dir(desk.path("some")).unwrap();
+    fs::write(desk.path("some/0001.json"), "edited").unwrap();
+    for (line, expected) in [
+        ("people @c.json --out @mine.json", "give --overwrite"),
+        ("people @c.json --out @some", "0001.json: is there already"),
+        ("people @c.json --out @new.json --person 1,7", "--person 7: there is nobody of that id"),
+        ("people @c.json --out @mine.json/below", "--out"),
+        ("people @c.json", "--out"),
+    ] {
+        let ran = desk.run(line);
+        assert_eq!(ran.exit, Exit::BadInput, "{line}: {}", ran.err);
+        assert!(ran.err.contains(expected), "{line}: {}", ran.err);
+    }
+    assert_eq!(desk.text("mine.json"), "edited");
+    assert!(!desk.path("some/0000-maria.json").exists(), "nothing is half written");
+    assert_eq!(desk.run("people @c.json --out @mine.json --overwrite").exit, Exit::Done);
+    let desk = Desk::new(&json!({"brush": false}));
+    let ran = desk.run("people @c.json --out @a.json");
+    assert_eq!(ran.exit, Exit::BadInput);
+    assert!(ran.err.contains("c.json: nobody recurs"), "{}", ran.err);
 }
 
 #[test]

@@ -15,6 +15,7 @@ use figurant_core::engine::cpu::{CpuEngine, CpuOptions, SimdChoice};
 use figurant_core::job::{FrameMaker, RenderedFrame, Studio};
 use figurant_core::label::Visibility;
 use figurant_core::library::Library;
+use serde_json::Value;
 
 fn preset(name: &str) -> Document {
     file::parse(presets::find(name).unwrap().text).unwrap()
@@ -209,6 +210,84 @@ fn check_frame(made: &RenderedFrame) -> Found {
     found
 }
 
+/// People are written to files, one is edited and named, and they stand in another data set.
+#[test]
+fn people_of_one_config_are_named_in_the_data_set_of_another() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
+    let seed = concat!(env!("CARGO_MANIFEST_DIR"), "/../presets/peoplesanspeople.json");
+    let (exit, messages) = figurant(&["people", seed, "--out", &path("all"), "--person", "3,8"]);
+    assert_eq!(exit, Exit::Done, "{messages}");
+    let edited = read(&path("all/0003.json"), |person| {
+        person["name"] = "maria".into();
+        person["body"]["age_years"] = 71.5.into();
+    });
+    let poses = r#"{"poses": {"mine": {"activity": "testing", "both": {"elbow_flexion": 40}}}}"#;
+    fs::create_dir(path("assets")).unwrap();
+    fs::write(path("assets/mine.poses.json"), poses).unwrap();
+    let config = serde_json::json!({
+        "version": 1,
+        "assets": ["assets", "all"],
+        "background": {"wall": {"texture": "none"}},
+        "occluders": {"enabled": false},
+        "people": {
+            "identities": null,
+            "cast": [{"file": "all/0003.json"}, {"file": "0008.json"}],
+            "pose": {"clip": "pose/mine"},
+        },
+    });
+    fs::write(path("config.json"), config.to_string()).unwrap();
+    let args = ["export", &path("config.json"), "--out", &path("out"), "--frames", "2"];
+    let (exit, messages) = figurant(&[&args[..], &["--size", "200x150"]].concat());
+    assert_eq!(exit, Exit::Done, "{messages}");
+
+    let manifest = read(&path("out/manifest.json"), |_| {});
+    let who = &manifest["identities"];
+    assert_eq!(who.as_array().unwrap().len(), 2);
+    assert_eq!((&who[0]["id"], &who[0]["name"]), (&0.into(), &"maria".into()));
+    assert_eq!((&who[1]["id"], &who[1].get("name")), (&1.into(), &None));
+    for field in ["sex", "age_years", "stature_m", "bmi_kg_m2"] {
+        assert_eq!(who[0][field], edited["body"][field], "{field}");
+    }
+    let index = read(&path("out/coco/annotations.json"), |_| {});
+    let shown = index["annotations"].as_array().unwrap();
+    let marias = shown.iter().filter(|a| a["figurant"]["person"]["name"] == "maria").count();
+    assert!(marias > 0 && marias < shown.len());
+    assert_eq!(who[0]["annotations"], marias);
+    let asset = |id: &str| {
+        let all = manifest["assets"].as_array().unwrap();
+        all.iter().find(|a| a["id"] == id).unwrap_or_else(|| panic!("{id}: {all:?}")).clone()
+    };
+    for id in ["poses/mine.poses.json", "people/all/0003.json", "people/0008.json"] {
+        let asset = asset(id);
+        assert_eq!(asset["licence"], "NOASSERTION", "{id}");
+        assert_eq!(asset["content_hash"].as_str().unwrap().len(), 64, "{id}");
+    }
+    // The data set's own config holds the people themselves and gives the same frames.
+    fs::copy(path("out/config.json"), path("again.json")).unwrap();
+    let args = ["export", &path("again.json"), "--out", &path("again"), "--frames", "2"];
+    let (exit, messages) = figurant(&args);
+    assert_eq!(exit, Exit::Done, "{messages}");
+    for name in ["scenes/000001.json", "coco/annotations.json"] {
+        assert!(
+            fs::read(path(&format!("out/{name}"))).unwrap()
+                == fs::read(path(&format!("again/{name}"))).unwrap(),
+            "{name}"
+        );
+    }
+}
+
+/// A JSON file after a change, which is written back.
+fn read(path: &str, change: impl FnOnce(&mut Value)) -> Value {
+    let mut value: Value = serde_json::from_slice(&fs::read(path).unwrap()).unwrap();
+    let before = value.clone();
+    change(&mut value);
+    if value != before {
+        fs::write(path, value.to_string()).unwrap();
+    }
+    value
+}
+
 #[test]
 fn hostile_configs_are_refused_with_their_field() {
     let folder = tempfile::tempdir().unwrap();
@@ -220,6 +299,13 @@ fn hostile_configs_are_refused_with_their_field() {
         (r#"{"version": 1, "image": {"width": 100000, "height": 100000}}"#, "image"),
         (crowded.as_str(), "people.placement.separation_m"),
         (r#"{"version": 1, "people": {"scale": {"uniform": [3, 1]}}}"#, "people.scale"),
+        (r#"{"version": 1, "people": {"body": {"age_years": 0}}}"#, "people.body.age_years"),
+        (r#"{"version": 1, "people": {"cast": [{"file": "gone.json"}]}}"#, "people.cast[0].file"),
+        (
+            r#"{"version": 1, "people": {"cast": [{"look": {"face": {"head-ovall": 1}}}]}}"#,
+            "people.cast[0].look.face.head-ovall",
+        ),
+        (r#"{"version": 1, "people": {"identities": 1, "cast": [{}, {}]}}"#, "people.identities"),
         (r#"{"version": 1, "frames": 1e999}"#, "number"),
         (r#"{"version": 99}"#, "version"),
         (r#"{"version": 1, "camra": {}}"#, "camera"),

@@ -33,6 +33,7 @@ fn catalogue() -> Catalogue {
     .chain(["dance_a", "dance_b", "crawl", "getup_facedown", "getup_faceup"]);
     Catalogue {
         face_targets: names("nose-scale", 60),
+        face_units: names("unit", 3),
         clips: clips.map(|id| activity(id, "moving")).collect(),
         poses: Poses::built_in().all().iter().map(|p| activity(&p.id, &p.activity)).collect(),
         textures: TextureLibrary::new(&[])
@@ -187,6 +188,8 @@ fn a_switch_changes_nothing_else() {
                 "people/*/look/skin_color",
                 "people/*/look/hair_color",
                 "people/*/look/iris_color",
+                "people/*/look/freckles",
+                "people/*/look/flush",
                 "people/*/look/hair",
                 "people/*/look/beard",
                 "people/*/look/headwear",

@@ -35,6 +35,8 @@ pub enum Command {
     Frame(FrameArgs),
     /// Make a page of pictures from a list of configs.
     Gallery(GalleryArgs),
+    /// Write the people of a config as files, to be edited and listed in configs.
+    People(PeopleArgs),
     /// Check a config: every problem, with its field and a suggestion.
     Validate(ValidateArgs),
     /// Print the JSON Schema of the config.
@@ -109,6 +111,27 @@ pub struct GalleryArgs {
     pub out: PathBuf,
     #[command(flatten)]
     pub changes: Changes,
+}
+
+#[derive(Debug, ClapArgs)]
+pub struct PeopleArgs {
+    /// The config.
+    pub config: PathBuf,
+    /// A file that ends in .json for all of them, or a folder for a file each.
+    #[arg(long, value_name = "DIR|FILE.json")]
+    pub out: PathBuf,
+    /// Those who stand in this frame instead of those who recur over the frames.
+    #[arg(long, value_name = "I")]
+    pub frame: Option<u32>,
+    /// Some of them only: by identity, or with --frame by instance id.
+    #[arg(long, value_name = "IDS", value_delimiter = ',')]
+    pub person: Vec<u32>,
+    /// Replace files that are there.
+    #[arg(long)]
+    pub overwrite: bool,
+    /// Key of all randomness, instead of the config's.
+    #[arg(long)]
+    pub seed: Option<u64>,
 }
 
 #[derive(Debug, ClapArgs)]

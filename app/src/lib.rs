@@ -40,6 +40,7 @@ pub fn run<R: Road>(
         Some(args::Command::Export(args)) => commands::export::run(road, &args, console, stop),
         Some(args::Command::Frame(args)) => commands::frame::run(road, &args, console),
         Some(args::Command::Gallery(args)) => commands::gallery::run(road, &args, console),
+        Some(args::Command::People(args)) => commands::people::run(road, &args, console),
         Some(args::Command::Validate(args)) => commands::validate::run(road, &args, console),
         Some(args::Command::Schema) => commands::schema::run(road, console),
         Some(args::Command::Doctor(args)) => commands::doctor::run(road, &args, console),

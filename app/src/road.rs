@@ -7,6 +7,7 @@ use std::collections::BTreeSet;
 use std::num::NonZeroUsize;
 use std::path::Path;
 
+use figurant_core::document::cast::Member;
 use figurant_core::export::DatasetInfo;
 use figurant_core::job::FrameMaker;
 use figurant_core::plan::Outputs;
@@ -73,6 +74,17 @@ pub trait Road: Sync {
     /// # Errors
     /// When the file or an asset cannot be read, or something in it is wrong.
     fn load(&self, config: &Path, wishes: &Wishes) -> Result<Job<Self::Document>, LoadError>;
+
+    /// The people who recur over the frames of a config with their identities, or those who stand
+    /// in one frame with their instance ids, as configs can list them.
+    ///
+    /// # Errors
+    /// When there is nobody.
+    fn people(
+        &self,
+        job: &Job<Self::Document>,
+        frame: Option<u32>,
+    ) -> Result<Vec<(u32, Member)>, String>;
 
     /// A config that ships with the program, to try a machine with.
     ///

@@ -4,14 +4,17 @@ use std::num::NonZeroUsize;
 use std::path::Path;
 use std::sync::Arc;
 
+use figurant_core::document::cast::Member;
+use figurant_core::document::cast::file::{Settled, Source, read_all};
 use figurant_core::document::file::{self, FileError};
 use figurant_core::document::{self, Document, ImageFormat, presets};
 use figurant_core::draw::Cast;
 use figurant_core::engine::cpu::{CpuEngine, CpuOptions, SimdChoice};
 use figurant_core::export::{AssetLicence, DatasetInfo, PictureFormat};
-use figurant_core::job::{FrameError, Studio};
-use figurant_core::library::Library;
+use figurant_core::job::{FrameError, Studio, catalogue};
 use figurant_core::library::textures::TextureGroup;
+use figurant_core::library::{Library, NO_LICENCE};
+use figurant_core::sampling::Sampler;
 
 use crate::road::{Job, LoadError, Road, Simd, Wishes};
 
@@ -43,13 +46,33 @@ impl Road for Native {
             other => LoadError::Unreadable(other.to_string()),
         })?;
         let folders = loaded.asset_folders();
-        prepare(loaded.document, &folders, wishes)
+        let Settled { document, sources } = read_all(loaded).map_err(|problems| {
+            LoadError::Invalid(problems.0.iter().map(ToString::to_string).collect())
+        })?;
+        prepare(document, sources, &folders, wishes)
+    }
+
+    fn people(&self, job: &Job<Loaded>, frame: Option<u32>) -> Result<Vec<(u32, Member)>, String> {
+        let Loaded { document, library, .. } = &job.document;
+        let sampler =
+            Sampler::new(Arc::clone(document), catalogue(library)).map_err(|e| e.to_string())?;
+        let people: Vec<_> = match frame {
+            Some(frame) => sampler.members_of_frame(frame),
+            None => (0..).zip(sampler.members()).collect(),
+        };
+        match (people.is_empty(), frame) {
+            (false, _) => Ok(people),
+            (true, Some(frame)) => Err(format!("nobody stands in frame {frame}; choose another")),
+            (true, None) => Err("people.identities: is null, so that nobody recurs; write a \
+                 number, or give --frame for the people of one frame"
+                .to_owned()),
+        }
     }
 
     fn starter(&self, wishes: &Wishes) -> Result<Job<Loaded>, LoadError> {
         let document = file::parse(presets::ALL[0].text)
             .map_err(|problems| LoadError::Unreadable(problems.to_string()))?;
-        prepare(document, &[], wishes)
+        prepare(document, Vec::new(), &[], wishes)
     }
 
     fn maker(&self, job: &Job<Loaded>, threads: NonZeroUsize) -> Result<Studio, FrameError> {
@@ -92,6 +115,7 @@ const fn choice(simd: Simd) -> SimdChoice {
 /// Applies the wishes, loads the library and checks the one against the other.
 fn prepare(
     mut document: Document,
+    sources: Vec<Source>,
     folders: &[std::path::PathBuf],
     wishes: &Wishes,
 ) -> Result<Job<Loaded>, LoadError> {
@@ -108,7 +132,7 @@ fn prepare(
     invalid(Studio::check_assets(&studio.document, &studio.library))?;
     Ok(Job {
         frames: studio.document.frames,
-        info: info(&studio),
+        info: info(&studio, sources),
         simd: wishes.simd,
         document: studio,
     })
@@ -127,7 +151,19 @@ fn apply(wishes: &Wishes, document: &mut Document) {
     }
 }
 
-fn info(Loaded { document, library, .. }: &Loaded) -> DatasetInfo {
+fn info(Loaded { document, library, .. }: &Loaded, sources: Vec<Source>) -> DatasetInfo {
+    let of_library = library.licences().into_iter().map(|l| AssetLicence {
+        id: l.id,
+        content_hash: l.content_hash,
+        licence: l.licence.to_owned(),
+        source: l.source.to_owned(),
+    });
+    let of_cast = sources.into_iter().map(|source| AssetLicence {
+        id: format!("people/{}", source.name),
+        content_hash: Some(source.content_hash),
+        licence: NO_LICENCE.to_owned(),
+        source: "file of people of the config".to_owned(),
+    });
     DatasetInfo {
         config_json: file::text(document),
         program_version: env!("CARGO_PKG_VERSION").to_owned(),
@@ -140,15 +176,6 @@ fn info(Loaded { document, library, .. }: &Loaded) -> DatasetInfo {
             ImageFormat::Jpeg => PictureFormat::Jpeg(document.output.jpeg_quality),
             ImageFormat::Png => PictureFormat::Png,
         },
-        assets: library
-            .licences()
-            .into_iter()
-            .map(|l| AssetLicence {
-                id: l.id,
-                content_hash: None,
-                licence: l.licence.to_owned(),
-                source: l.source.to_owned(),
-            })
-            .collect(),
+        assets: of_library.chain(of_cast).collect(),
     }
 }

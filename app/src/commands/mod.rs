@@ -13,6 +13,7 @@ pub mod doctor;
 pub mod export;
 pub mod frame;
 pub mod gallery;
+pub mod people;
 pub mod schema;
 pub mod validate;
 

@@ -127,6 +127,10 @@ impl<'a> Walk<'a> {
         for (name, value) in map {
             match properties.and_then(|p| p.get(name)) {
                 Some(field) => self.check(value, field, &join(path, name)),
+                // A map by free names: each value has the same form.
+                None if schema.get("additionalProperties").is_some_and(Value::is_object) => {
+                    self.check(value, &schema["additionalProperties"], &join(path, name));
+                }
                 None => {
                     let names = field_names(schema);
                     let message = format!("unknown field, known here are {}", list(&names));

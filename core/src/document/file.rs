@@ -92,14 +92,10 @@ pub fn load(path: &Path) -> Result<Loaded, FileError> {
     if std::fs::metadata(path).map_err(io)?.is_dir() {
         return Err(FileError::Folder(path.to_owned()));
     }
-    let mut bytes = Vec::new();
-    let file = std::fs::File::open(path).map_err(io)?;
-    // Read rather than trust the stated size: pipes and devices have none.
-    file.take(MAX_BYTES + 1).read_to_end(&mut bytes).map_err(io)?;
-    if bytes.len() as u64 > MAX_BYTES {
+    let Some(bytes) = read(path).map_err(io)? else {
         let bytes = std::fs::metadata(path).map_err(io)?.len().max(MAX_BYTES + 1);
         return Err(FileError::TooLarge { path: path.to_owned(), bytes });
-    }
+    };
     let text = String::from_utf8(bytes).map_err(|e| {
         let at = e.utf8_error().valid_up_to();
         invalid(vec![Problem::new("", format!("not UTF-8 text (byte {at}); expected JSON"))])
@@ -107,6 +103,18 @@ pub fn load(path: &Path) -> Result<Loaded, FileError> {
     let document = parse(&text).map_err(|Problems(problems)| invalid(problems))?;
     let folder = path.parent().map(Path::to_owned).unwrap_or_default();
     Ok(Loaded { document, folder })
+}
+
+/// The bytes of a file that people write by hand; `None` where it is larger than [`MAX_BYTES`], of
+/// which no more is read than that.
+///
+/// # Errors
+/// When the file system refuses.
+pub fn read(path: &Path) -> std::io::Result<Option<Vec<u8>>> {
+    let mut bytes = Vec::new();
+    // Read rather than trust the stated size: pipes and devices have none.
+    std::fs::File::open(path)?.take(MAX_BYTES + 1).read_to_end(&mut bytes)?;
+    Ok((bytes.len() as u64 <= MAX_BYTES).then_some(bytes))
 }
 
 /// A document from its text, migrated and checked.

@@ -5,13 +5,15 @@
 //! PeopleSansPeople (Ebadi et al. 2021, table "Domain Randomization Parameters"), with its
 //! left-handed coordinates mirrored in x.
 //!
-//! [`mod@file`] reads and writes documents, [`mod@check`] compares their form with the schema, and
-//! [`validate()`] says which values make no sense. Each problem names its field.
+//! [`mod@file`] reads and writes documents, [`mod@cast`] holds people who are listed in them,
+//! [`mod@check`] compares their form with the schema, and [`validate()`] says which values make no
+//! sense. Each problem names its field.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 mod camera;
+pub mod cast;
 pub mod check;
 mod face;
 pub mod file;
@@ -66,7 +68,8 @@ pub struct Document {
     pub seed: u64,
     /// How many frames there are.
     pub frames: u32,
-    /// Folders of JPEG and PNG textures; relative ones start at the config's own folder.
+    /// Folders of JPEG and PNG textures, of pose files and of files of people; relative ones start
+    /// at the config's own folder.
     pub assets: Vec<String>,
     /// The picture's size.
     pub image: Image,

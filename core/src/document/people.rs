@@ -3,6 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use super::cast::Member;
 use super::face::Expression;
 use super::place::PoissonDisk;
 use super::{Auto, Choice, Color, Flag, Param, Placement, Rotation, Wardrobe};
@@ -16,8 +17,11 @@ pub struct People {
     pub enabled: bool,
     /// How many different people there are, over all frames; `null` for somebody new each time.
     /// Who comes again has the same body, face, hair and cut of clothes; the clothes' colours, the
-    /// pose and the place are drawn anew. People who recur take no time to shape.
+    /// pose and the place are drawn anew. People who recur take no time to shape. At least as many
+    /// as the cast; `null` with a cast for the people of the cast alone.
     pub identities: Option<u32>,
+    /// People who are listed: the first identities, in this order.
+    pub cast: Vec<Member>,
     /// Where they stand.
     pub placement: Placement,
     /// Multiplies a person of normal size.
@@ -39,6 +43,7 @@ impl Default for People {
         Self {
             enabled: true,
             identities: Some(50),
+            cast: Vec::new(),
             placement: Placement::PoissonDisk(PoissonDisk {
                 x_m: [-7.5, 7.5],
                 y_m: [-7.5, 7.5],
@@ -52,6 +57,16 @@ impl Default for People {
             wardrobe: Wardrobe::default(),
             pose: Pose::default(),
         }
+    }
+}
+
+impl People {
+    /// How many different people recur over all frames, those of the cast among them; `None` where
+    /// somebody new comes each time.
+    #[must_use]
+    pub fn identity_count(&self) -> Option<u32> {
+        let listed = u32::try_from(self.cast.len()).unwrap_or(u32::MAX);
+        self.identities.or((listed > 0).then_some(listed))
     }
 }
 

@@ -2,8 +2,10 @@
 //!
 //! Form is [`super::check`]'s business, the rules for single parameters are in [`rules`].
 
+mod cast;
 mod rules;
 
+pub(super) use cast::problems_of_member;
 use rules::{Check, Range};
 
 use super::{
@@ -27,6 +29,9 @@ const POSITION: Range = Range::from_to(-1e7, 1e7);
 const ANGLE: Range = Range::from_to(-3600.0, 3600.0);
 const SHARE: Range = Range::from_to(0.0, 1.0);
 const LENGTH: Range = Range::above(0.0, 1e5);
+const AGE_YEARS: Range = Range::from_to(1.0, 90.0);
+const STATURE_M: Range = Range::from_to(0.4, 2.6);
+const BMI_KG_M2: Range = Range::from_to(10.0, 60.0);
 
 /// Everything in a document that makes no sense, in the order of its fields.
 #[must_use]
@@ -234,9 +239,7 @@ fn placement(c: &mut Check, path: &str, placement: &Placement, limit: u32) {
 }
 
 fn people(c: &mut Check, people: &People) {
-    if let Some(count) = people.identities {
-        c.count("people.identities", count, 1, MAX_IDENTITIES);
-    }
+    cast::cast(c, people);
     placement(c, "people.placement", &people.placement, MAX_PEOPLE);
     c.param("people.scale", &people.scale, Range::above(0.0, 100.0));
     c.rotation("people.rotation_deg", &people.rotation_deg);
@@ -263,13 +266,13 @@ fn pose(c: &mut Check, pose: &Pose) {
 }
 
 fn body(c: &mut Check, body: &Body) {
-    c.param("people.body.age_years", &body.age_years, Range::from_to(1.0, 90.0));
+    c.param("people.body.age_years", &body.age_years, AGE_YEARS);
     c.choice("people.body.sex", &body.sex);
     if let Auto::Given(stature) = &body.stature_m {
-        c.param("people.body.stature_m", stature, Range::from_to(0.4, 2.6));
+        c.param("people.body.stature_m", stature, STATURE_M);
     }
     if let Auto::Given(bmi) = &body.bmi_kg_m2 {
-        c.param("people.body.bmi_kg_m2", bmi, Range::from_to(10.0, 60.0));
+        c.param("people.body.bmi_kg_m2", bmi, BMI_KG_M2);
     }
     let sliders: [(&str, &Param); 4] = [
         ("people.body.muscle", &body.muscle),
@@ -284,18 +287,19 @@ fn body(c: &mut Check, body: &Body) {
         Ancestry::Dirichlet(alpha) => {
             c.numbers("people.body.ancestry.dirichlet", alpha, Range::from_to(0.01, 1e3));
         }
-        Ancestry::Shares(shares) => {
-            let path = "people.body.ancestry.shares";
-            if c.numbers(path, shares, Range::from_to(0.0, 1e6))
-                && shares.iter().sum::<f64>() <= 0.0
-            {
-                c.report(path, "at least one share must be > 0");
-            }
+        Ancestry::Shares(given) => {
+            shares(c, "people.body.ancestry.shares", given);
         }
         Ancestry::Choice(items) => {
             c.weights("people.body.ancestry.choice", items.iter().map(|i| i.1));
         }
     }
+}
+
+/// Shares of forebears: none negative, not all 0.
+fn shares(c: &mut Check, path: &str, shares: &[f64; 3]) -> bool {
+    c.numbers(path, shares, Range::from_to(0.0, 1e6))
+        && (shares.iter().sum::<f64>() > 0.0 || c.report(path, "at least one share must be > 0"))
 }
 
 fn look(c: &mut Check, look: &Look) {
@@ -339,7 +343,7 @@ fn wardrobe(c: &mut Check, wardrobe: &Wardrobe) {
     if let Auto::Given(rows) = &wardrobe.outfit {
         outfit_rows(c, rows);
     }
-    let loose = Range::from_to(0.0, 0.1);
+    let loose = cast::LOOSENESS;
     let (top, bottom, outer) = (&wardrobe.top, &wardrobe.bottom, &wardrobe.outer);
     let shoes = &wardrobe.shoes;
     given(&top.kind, |kind| c.choice("people.wardrobe.top.kind", kind));

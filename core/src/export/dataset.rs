@@ -42,7 +42,7 @@ impl Dataset {
         let layout = &dataset.layout;
         folder::prepare(layout, existing)?;
         // First, so that the folder says whose it is even if the program is killed right now.
-        let nothing = manifest::to_json(&dataset.info, &FrameSet::default());
+        let nothing = manifest::to_json(&dataset.info, &FrameSet::default(), &[]);
         atomic::write(&layout.manifest(), &nothing)?;
         folder::clear(layout)?;
         for folder in dataset.folders() {
@@ -130,10 +130,11 @@ impl Dataset {
     /// When a part of the index cannot be read or a file cannot be written.
     pub fn finish(&self, report: &Report) -> Result<(), ExportError> {
         let layout = &self.layout;
-        coco::assemble(layout, &report.done)?;
+        let identities = coco::assemble(layout, &report.done)?;
         atomic::write(&layout.report(), &report.to_json())?;
         folder::sync(layout)?;
-        atomic::write(&layout.manifest(), &manifest::to_json(&self.info, &report.done))?;
+        let manifest = manifest::to_json(&self.info, &report.done, &identities);
+        atomic::write(&layout.manifest(), &manifest)?;
         atomic::sync_folder(layout.root())?;
         if report.is_complete() {
             let parts = layout.root().join(".figurant");
@@ -280,8 +281,29 @@ mod tests {
         let person = &extras["person"];
         assert_eq!(person["sex"], "female");
         assert_eq!([&person["clip"], &person["activity"]], ["walk", "walking"]);
-        assert_eq!((&person["phase"], &person["identity"]), (&Value::from(0.25), &Value::from(7)));
+        assert_eq!((&person["phase"], &person["identity"]), (&Value::from(0.25), &Value::from(14)));
+        assert!(person.get("name").is_none());
+        assert_eq!(annotations[0]["figurant"]["person"]["name"], "maria");
         assert!(person.get("pose").is_none());
+    }
+
+    #[test]
+    fn the_manifest_lists_who_recurs() {
+        let dir = tempfile::tempdir().unwrap();
+        let dataset = create(dir.path(), sample::all_outputs());
+        assert!(json(dataset.layout().manifest()).get("identities").is_none());
+        for (frame, people) in [(4, 2), (1, 1), (2, 0), (9, 1)] {
+            commit(&dataset, frame, people);
+        }
+        // Frame 9 was not finished by this run.
+        dataset.finish(&report(0..5, [4, 1, 2])).unwrap();
+        let expected = serde_json::json!([
+            {"id": 7, "name": "maria", "sex": "female", "age_years": 33.5, "stature_m": 1.71,
+             "bmi_kg_m2": 21.9, "annotations": 2},
+            {"id": 14, "sex": "female", "age_years": 33.5, "stature_m": 1.71,
+             "bmi_kg_m2": 21.9, "annotations": 1},
+        ]);
+        assert_eq!(json(dataset.layout().manifest())["identities"], expected);
     }
 
     #[test]

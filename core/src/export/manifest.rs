@@ -7,6 +7,7 @@ use serde::Serialize;
 use super::{FrameSet, PictureFormat};
 use crate::label::annotation::SemanticClass;
 use crate::plan::{Output, Outputs};
+use crate::scene::Sex;
 
 /// Version of the layout of a data set.
 pub const FORMAT_VERSION: u32 = 1;
@@ -23,6 +24,26 @@ pub struct AssetLicence {
     pub licence: String,
     /// Where it comes from.
     pub source: String,
+}
+
+/// Somebody who recurs over the frames of a data set, as annotated in the first of them.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Identity {
+    /// Who of those who recur it is.
+    pub id: u32,
+    /// What the config calls this person, if it does.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub name: Option<String>,
+    /// Of the body model.
+    pub sex: Sex,
+    /// Years.
+    pub age_years: f64,
+    /// Standing height without shoes, metres.
+    pub stature_m: f64,
+    /// kg/m2.
+    pub bmi_kg_m2: f64,
+    /// How many annotations show this person.
+    pub annotations: u64,
 }
 
 /// What stays the same over all frames of a data set.
@@ -63,6 +84,9 @@ struct File<'a> {
     frames_done: Vec<[u32; 2]>,
     #[serde(skip_serializing_if = "Option::is_none")]
     semantic_classes: Option<Vec<Class>>,
+    /// Those who recur and are annotated, by their ids.
+    #[serde(skip_serializing_if = "<[_]>::is_empty")]
+    identities: &'a [Identity],
     assets: &'a BTreeSet<AssetLicence>,
 }
 
@@ -74,7 +98,7 @@ struct Class {
 }
 
 /// The bytes of the file.
-pub(super) fn to_json(info: &DatasetInfo, done: &FrameSet) -> Vec<u8> {
+pub(super) fn to_json(info: &DatasetInfo, done: &FrameSet, identities: &[Identity]) -> Vec<u8> {
     let class = |c: SemanticClass| Class { id: c.id(), name: c.name(), color: c.color() };
     let classes = || SemanticClass::ALL.map(class).into_iter().collect();
     super::pretty_json(&File {
@@ -89,6 +113,7 @@ pub(super) fn to_json(info: &DatasetInfo, done: &FrameSet) -> Vec<u8> {
         outputs: &info.outputs,
         frames_done: done.ranges().iter().map(|r| [r.start, r.end]).collect(),
         semantic_classes: info.outputs.contains(&Output::Semantic).then(classes),
+        identities,
         assets: &info.assets,
     })
 }

@@ -29,7 +29,7 @@ pub use error::ExportError;
 pub use folder::Existing;
 pub use frame_set::FrameSet;
 pub use layout::{FrameFile, Layout};
-pub use manifest::{AssetLicence, DatasetInfo, FORMAT_VERSION};
+pub use manifest::{AssetLicence, DatasetInfo, FORMAT_VERSION, Identity};
 pub use picture::PictureFormat;
 pub use report::{FailedFrame, Report};
 

@@ -380,6 +380,7 @@ mod tests {
         Person {
             slot: 0,
             identity: None,
+            name: None,
             placement: Placement {
                 position_m: DVec3::ZERO,
                 rotation: DQuat::IDENTITY,

@@ -120,6 +120,7 @@ pub fn catalogue(library: &Library) -> Catalogue {
         |id: &str, activity: &str| Activity { id: id.to_owned(), activity: activity.to_owned() };
     Catalogue {
         face_targets: library.figure.face_shape_names().map(str::to_owned).collect(),
+        face_units: library.figure.face_unit_names().map(str::to_owned).collect(),
         clips: library.clips.all().iter().map(|c| activity(&c.id, c.activity())).collect(),
         poses: library.poses.all().iter().map(|p| activity(&p.id, &p.activity)).collect(),
         textures: library.surface_textures(),

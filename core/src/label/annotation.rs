@@ -217,6 +217,9 @@ pub struct PersonMeta {
     pub sex: Sex,
     /// Standing height without shoes, metres.
     pub stature_m: f64,
+    /// Body mass index that was drawn, kg/m2; what the body model does not reach becomes the nearest
+    /// that it does.
+    pub bmi_kg_m2: f64,
     /// From the body's volume, where that was measured.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub mass_kg: Option<f64>,
@@ -225,6 +228,9 @@ pub struct PersonMeta {
     /// Who of the people that recur over frames it is, if anybody does.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub identity: Option<u32>,
+    /// What the config calls this person, if it does.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub name: Option<String>,
     /// What the person does, such as `walking`.
     pub activity: String,
     /// Motion clip id; empty where the person takes a pose.
@@ -253,9 +259,11 @@ impl PersonMeta {
             age_years: person.body.age_years,
             sex: person.body.sex,
             stature_m: person.body.stature_m,
+            bmi_kg_m2: person.body.bmi_kg_m2,
             mass_kg,
             garments: garments(&person.outfit),
             identity: person.identity,
+            name: person.name.clone(),
             activity: person.pose.activity.clone(),
             clip,
             pose,

@@ -89,6 +89,13 @@ impl ClipFrame {
     }
 }
 
+/// Frames of a clip at least: what does not move is a pose.
+pub const MIN_FRAMES: usize = 2;
+/// Frames of a clip at most, half an hour at 60 a second; as [`ClipFrame`]s some 45 MB.
+pub const MAX_FRAMES: usize = 108_000;
+/// Size of the unpacked file at most, bytes; read no further.
+const MAX_UNPACKED_BYTES: u64 = 32 << 20;
+
 /// One motion.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Clip {
@@ -102,19 +109,17 @@ pub struct Clip {
 }
 
 impl Clip {
-    /// A clip of at least one frame.
+    /// A clip of [`MIN_FRAMES`] to [`MAX_FRAMES`] frames.
     ///
     /// # Errors
-    /// Without frames.
+    /// With fewer or more.
     pub fn new(
         id: String,
         frame_s: f64,
         loops: bool,
         frames: Vec<ClipFrame>,
     ) -> Result<Self, ClipError> {
-        if frames.is_empty() {
-            return Err(ClipError::Malformed { what: "a clip without frames" });
-        }
+        check_length(&id, frames.len())?;
         Ok(Self { id, frame_s, loops, frames })
     }
 
@@ -168,6 +173,18 @@ impl Clip {
     }
 }
 
+fn check_length(id: &str, frames: usize) -> Result<(), ClipError> {
+    if (MIN_FRAMES..=MAX_FRAMES).contains(&frames) {
+        return Ok(());
+    }
+    let advice = if frames < MIN_FRAMES {
+        "what does not move is a pose; write it as one"
+    } else {
+        "cut it into several clips"
+    };
+    Err(ClipError::Length { id: id.to_owned(), frames, advice })
+}
+
 /// A set of clips, ordered by id.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Clips {
@@ -185,6 +202,21 @@ pub enum ClipError {
     Malformed {
         /// What was found.
         what: &'static str,
+    },
+    /// More than any clips need.
+    #[error("the clip file unpacks to more than {MAX_UNPACKED_BYTES} bytes; split it")]
+    TooLarge,
+    /// A clip of too few or too many frames.
+    #[error(
+        "clip \"{id}\": must have from {MIN_FRAMES} to {MAX_FRAMES} frames, got {frames}; {advice}"
+    )]
+    Length {
+        /// Which.
+        id: String,
+        /// How many it has.
+        frames: usize,
+        /// What to do.
+        advice: &'static str,
     },
     /// No such clip.
     #[error("there is no motion clip \"{id}\"; there are: {known}")]
@@ -211,13 +243,18 @@ impl Clips {
     /// Reads a packed file.
     ///
     /// # Errors
-    /// When it does not follow the format of this page.
+    /// When it does not follow the format of this page, or holds clips of too few or too many
+    /// frames; how much of it is unpacked is bounded.
     pub fn from_bytes(packed: &[u8]) -> Result<Self, ClipError> {
         let mut bytes = Vec::new();
         ruzstd::decoding::StreamingDecoder::new(packed)
             .map_err(|e| ClipError::Packed(e.to_string()))?
+            .take(MAX_UNPACKED_BYTES + 1)
             .read_to_end(&mut bytes)
             .map_err(|e| ClipError::Packed(e.to_string()))?;
+        if bytes.len() as u64 > MAX_UNPACKED_BYTES {
+            return Err(ClipError::TooLarge);
+        }
         let mut r = Reader(&bytes);
         if r.take(MAGIC.len())? != MAGIC {
             return Err(ClipError::Malformed { what: "the file does not begin with FGCLIPS1" });
@@ -296,6 +333,8 @@ impl<'a> Reader<'a> {
             return Err(ClipError::Malformed { what: "a frame time that is not positive" });
         }
         let count = self.u32()? as usize;
+        // Before anything is made ready for them.
+        check_length(&id, count)?;
         let mut frames = Vec::new();
         for body in 0..SourceBody::COUNT {
             let [x, y, z, w] = [
@@ -424,5 +463,38 @@ mod tests {
         assert!(Clips::from_bytes(&file[..file.len() / 2]).is_err());
         let unknown = Clips::built_in().get("swim").unwrap_err().to_string();
         assert!(unknown.contains("swim") && unknown.contains("walk"), "{unknown}");
+    }
+    /// A packed file of one clip that says how many frames it has, and of so many bytes of frames.
+    fn packed(frames: u32, bytes: usize) -> Vec<u8> {
+        let mut file = MAGIC.to_vec();
+        file.extend(1u32.to_le_bytes());
+        file.extend(b"\x04long\x00");
+        file.extend(0.1f32.to_le_bytes());
+        file.extend(frames.to_le_bytes());
+        file.resize(file.len() + bytes, 1);
+        let fastest = ruzstd::encoding::CompressionLevel::Fastest;
+        ruzstd::encoding::compress_to_vec(file.as_slice(), fastest)
+    }
+
+    #[test]
+    fn clips_of_one_frame_and_of_ten_million_are_refused() {
+        let refused = |frames| Clips::from_bytes(&packed(frames, 1000)).unwrap_err().to_string();
+        let one = refused(1);
+        assert!(one.contains("clip \"long\"") && one.contains("from 2 to 108000"), "{one}");
+        assert!(one.contains("got 1;") && one.contains("is a pose"), "{one}");
+        assert!(refused(0).contains("got 0;"));
+        let many = refused(10_000_000);
+        assert!(many.contains("got 10000000; cut it"), "{many}");
+        // As many frames as may be, of which the file holds a few.
+        assert!(refused(MAX_FRAMES as u32).contains("in the middle of a clip"));
+        let error = Clip::new("still".into(), 0.1, false, vec![turned(0.0)]).unwrap_err();
+        assert!(error.to_string().contains("clip \"still\""), "{error}");
+    }
+
+    #[test]
+    fn files_that_unpack_without_end_are_given_up() {
+        let bomb = packed(1000, 33 << 20);
+        assert!(bomb.len() < 1 << 20, "{} bytes", bomb.len());
+        assert!(matches!(Clips::from_bytes(&bomb), Err(ClipError::TooLarge)));
     }
 }

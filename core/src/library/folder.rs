@@ -7,7 +7,6 @@ use std::path::{Path, PathBuf};
 
 use image::{ImageDecoder, ImageFormat, ImageReader, Limits};
 
-use super::pose;
 use super::texture::{Encoding, Texture};
 use super::textures::TextureError;
 
@@ -23,7 +22,8 @@ const MAX_DEPTH: usize = 16;
 /// All JPEG and PNG files below a folder, as (path with slashes from the folder, path), in order.
 ///
 /// # Errors
-/// When the folder is missing, is none, cannot be read, or holds neither such a file nor poses.
+/// When the folder is missing, is none, cannot be read, or holds neither such a file nor one of
+/// poses or people.
 pub(super) fn list(folder: &Path) -> Result<Vec<(String, PathBuf)>, TextureError> {
     let unreadable = |source| TextureError::Unreadable { path: folder.to_owned(), source };
     match std::fs::metadata(folder) {
@@ -38,11 +38,17 @@ pub(super) fn list(folder: &Path) -> Result<Vec<(String, PathBuf)>, TextureError
     }
     let mut found = Vec::new();
     walk(folder, "", 0, &mut found)?;
-    if found.is_empty() && !pose::is_in(folder) {
+    if found.is_empty() && !holds_json(folder) {
         return Err(TextureError::Empty { path: folder.to_owned() });
     }
     found.sort();
     Ok(found)
+}
+
+/// Whether files of poses or people can be in a folder.
+fn holds_json(folder: &Path) -> bool {
+    let mut entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
+    entries.any(|entry| entry.file_name().to_string_lossy().ends_with(".json"))
 }
 
 fn walk(

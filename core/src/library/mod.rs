@@ -33,6 +33,9 @@ pub struct Library {
     pub textures: TextureLibrary,
 }
 
+/// What SPDX writes where nobody has said anything: the terms of users' own files.
+pub const NO_LICENCE: &str = "NOASSERTION";
+
 /// A library that cannot be put together.
 #[derive(Debug, thiserror::Error)]
 pub enum LibraryError {
@@ -52,6 +55,8 @@ pub enum LibraryError {
 pub struct Licence {
     /// Id in the library.
     pub id: String,
+    /// BLAKE3 hash of its content, where that is known without reading a picture.
+    pub content_hash: Option<String>,
     /// SPDX expression.
     pub licence: &'static str,
     /// Where it comes from.
@@ -90,13 +95,22 @@ impl Library {
             ("clips", "Zlib", "DeepMimic, as shipped with PyBullet 3.2.7"),
             ("poses", "CC0-1.0", "Figurant's own"),
         ];
-        let shipped =
-            shipped.map(|(id, licence, source)| Licence { id: id.to_owned(), licence, source });
-        let own = self.textures.ids(TextureGroup::Folder).iter().map(|id| Licence {
-            id: id.clone(),
-            licence: "NOASSERTION",
-            source: "picture folder of the config",
+        let of = |id: String, content_hash, licence, source| Licence {
+            id,
+            content_hash,
+            licence,
+            source,
+        };
+        let shipped = shipped.map(|(id, licence, source)| of(id.to_owned(), None, licence, source));
+        let pictures = self
+            .textures
+            .ids(TextureGroup::Folder)
+            .iter()
+            .map(|id| of(id.clone(), None, NO_LICENCE, "picture folder of the config"));
+        let poses = self.poses.files().iter().map(|file| {
+            let hash = Some(file.content_hash.clone());
+            of(format!("poses/{}", file.name), hash, NO_LICENCE, "pose file of the config")
         });
-        shipped.into_iter().chain(own).collect()
+        shipped.into_iter().chain(pictures).chain(poses).collect()
     }
 }

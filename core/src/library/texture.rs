@@ -31,7 +31,7 @@ impl Texture {
     /// Index in `texels` of the first texel of a level.
     #[must_use]
     pub const fn level_offset(log2_size: u32, level: u32) -> usize {
-        // Sum of 4^(n - k) for k in 0..level, with n = log2_size.
+        // Sum of 4^(n - k) for k in 0..level, with n = log2_size; also for the level after the last.
         ((1usize << (2 * (log2_size + 1))) - (1usize << (2 * (log2_size + 1 - level)))) / 3
     }
 
@@ -44,25 +44,23 @@ impl Texture {
     pub fn from_level0(log2_size: u32, encoding: Encoding, level0: Vec<u32>) -> Self {
         assert_eq!(level0.len(), 1 << (2 * log2_size), "one texel for each place of level 0");
         let mut texels = level0;
-        texels.reserve_exact(texels.len() / 3 + 1);
+        let all = Self::level_offset(log2_size, log2_size + 1);
+        texels.reserve_exact(all - texels.len());
+        texels.resize(all, 0);
         let tables = Tables::get();
         for level in 1..=log2_size {
-            let above = Self::level_offset(log2_size, level - 1);
             let side = 1usize << (log2_size - level);
-            for y in 0..side {
-                for x in 0..side {
-                    let at = |dx: usize, dy: usize| {
-                        texels[above + (2 * y + dy) * 2 * side + 2 * x + dx].to_le_bytes()
+            let (above, below) = texels.split_at_mut(Self::level_offset(log2_size, level));
+            let above = &above[Self::level_offset(log2_size, level - 1)..];
+            let rows = above.chunks_exact(4 * side).zip(below.chunks_exact_mut(side));
+            for (two_rows, out) in rows {
+                let (upper, lower) = two_rows.split_at(2 * side);
+                let fours = upper.as_chunks::<2>().0.iter().zip(lower.as_chunks::<2>().0);
+                for (out, (&[a, b], &[c, d])) in out.iter_mut().zip(fours) {
+                    *out = match encoding {
+                        Encoding::Srgb => tables.srgb_mean([a, b, c, d]),
+                        Encoding::Linear => plain_mean([a, b, c, d]),
                     };
-                    let four = [at(0, 0), at(1, 0), at(0, 1), at(1, 1)];
-                    texels.push(u32::from_le_bytes(std::array::from_fn(|channel| {
-                        let values = four.map(|texel| texel[channel]);
-                        if encoding == Encoding::Srgb && channel < 3 {
-                            tables.srgb_mean(values)
-                        } else {
-                            ((values.iter().map(|&v| u32::from(v)).sum::<u32>() + 2) / 4) as u8
-                        }
-                    })));
                 }
             }
         }
@@ -126,10 +124,26 @@ impl Tables {
         })
     }
 
-    fn srgb_mean(&self, values: [u8; 4]) -> u8 {
-        let sum: u32 = values.iter().map(|&v| u32::from(self.linear[usize::from(v)])).sum();
-        self.srgb[(sum / 16) as usize]
+    /// The mean of four colours in linear light; of their alpha as it stands.
+    fn srgb_mean(&self, texels: [u32; 4]) -> u32 {
+        let channel = |shift: u32| {
+            let linear = |texel: u32| u32::from(self.linear[(texel >> shift & 255) as usize]);
+            let sum: u32 = texels.iter().map(|&texel| linear(texel)).sum();
+            u32::from(self.srgb[(sum / 16) as usize]) << shift
+        };
+        channel(0) | channel(8) | channel(16) | plain_mean(texels) & 0xff00_0000
     }
+}
+
+/// The mean of four texels, channel by channel, rounded to nearest.
+fn plain_mean(texels: [u32; 4]) -> u32 {
+    // Two channels at a time, each with room for the sum of four.
+    const EVEN: u32 = 0x00ff_00ff;
+    let mean = |shift: u32| {
+        let sum: u32 = texels.iter().map(|texel| texel >> shift & EVEN).sum();
+        (sum + 0x0002_0002) >> 2 & EVEN
+    };
+    mean(0) | mean(8) << 8
 }
 
 /// For each place of an axis of `to` places: the first source place and the weights from there.

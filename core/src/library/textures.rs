@@ -53,7 +53,7 @@ pub enum TextureError {
     Missing { path: PathBuf },
     #[error("texture folder {} is not a folder; name the folder that holds the pictures", path.display())]
     NotAFolder { path: PathBuf },
-    #[error("texture folder {} holds no .jpg, .jpeg or .png file; add pictures or drop the folder", path.display())]
+    #[error("texture folder {} holds no .jpg, .jpeg or .png file and no .json file of poses or people; add some or drop the folder", path.display())]
     Empty { path: PathBuf },
     #[error("{} cannot be read: {source}", path.display())]
     Unreadable { path: PathBuf, source: std::io::Error },
@@ -91,7 +91,7 @@ impl TextureLibrary {
     /// folder of the same name is called `name~2`.
     ///
     /// # Errors
-    /// When a folder is missing, is none, cannot be read, or holds no picture.
+    /// When a folder is missing, is none, cannot be read, or holds no picture and no poses or people.
     pub fn new(folders: &[PathBuf]) -> Result<Self, TextureError> {
         let mut library = Self {
             procedural: procedural::ids(Kind::Procedural),

@@ -55,6 +55,15 @@ impl StageTimes {
         }
     }
 
+    /// Counts time that was measured within one stage as another's.
+    pub fn move_part(&mut self, from: &'static str, to: &'static str, time: Duration) {
+        if let Some((_, sum)) = self.entries.iter_mut().find(|(name, _)| *name == from) {
+            let time = time.min(*sum);
+            *sum -= time;
+            self.add(to, time);
+        }
+    }
+
     /// Runs a function and adds its time to a stage.
     pub fn measure<T>(&mut self, stage: &'static str, f: impl FnOnce() -> T) -> T {
         let start = std::time::Instant::now();

@@ -6,30 +6,46 @@ use super::people::Source;
 use super::quantile;
 use super::value::{item, number};
 use crate::base::rng::Draw;
+use crate::document::cast::MemberBody;
 use crate::document::{self, Ancestry, Auto, Origin};
 use crate::scene::Body;
 
-pub(super) fn body(body: &document::Body, source: Source) -> Body {
+/// Shares that sum to 1 as nearly as this are taken as they are, so that what was written is what
+/// is read.
+const SUM_SLACK: f64 = 1e-9;
+
+/// What is known of a person stays, the rest is drawn.
+pub(super) fn body(body: &document::Body, known: &MemberBody, source: Source) -> Body {
     let of = |key| source.of(key);
-    let sex = *item(&body.sex, of(keys::SEX));
-    let age_years = number(&body.age_years, of(keys::AGE));
+    let sex = known.sex.unwrap_or_else(|| *item(&body.sex, of(keys::SEX)));
+    let age_years = known.age_years.unwrap_or_else(|| number(&body.age_years, of(keys::AGE)));
     Body {
         sex,
         age_years,
-        stature_m: match &body.stature_m {
+        stature_m: known.stature_m.unwrap_or_else(|| match &body.stature_m {
             Auto::Auto(_) => growth::stature_m(sex, age_years, of(keys::STATURE).uniform()),
             Auto::Given(stature) => number(stature, of(keys::STATURE)),
-        },
-        bmi_kg_m2: match &body.bmi_kg_m2 {
+        }),
+        bmi_kg_m2: known.bmi_kg_m2.unwrap_or_else(|| match &body.bmi_kg_m2 {
             Auto::Auto(_) => growth::bmi_kg_m2(sex, age_years, of(keys::BMI).uniform()),
             Auto::Given(bmi) => number(bmi, of(keys::BMI)),
+        }),
+        muscle: known.muscle.unwrap_or_else(|| number(&body.muscle, of(keys::MUSCLE))),
+        proportions: known
+            .proportions
+            .unwrap_or_else(|| number(&body.proportions, of(keys::PROPORTIONS))),
+        ancestry: match known.ancestry {
+            Some(shares) => summing_to_one(shares),
+            None => ancestry(&body.ancestry, of(keys::ANCESTRY)),
         },
-        muscle: number(&body.muscle, of(keys::MUSCLE)),
-        proportions: number(&body.proportions, of(keys::PROPORTIONS)),
-        ancestry: ancestry(&body.ancestry, of(keys::ANCESTRY)),
-        cup: number(&body.cup, of(keys::CUP)),
-        firmness: number(&body.firmness, of(keys::FIRMNESS)),
+        cup: known.cup.unwrap_or_else(|| number(&body.cup, of(keys::CUP))),
+        firmness: known.firmness.unwrap_or_else(|| number(&body.firmness, of(keys::FIRMNESS))),
     }
+}
+
+fn summing_to_one(shares: [f64; 3]) -> [f64; 3] {
+    let sum: f64 = shares.iter().sum();
+    if (sum - 1.0).abs() < SUM_SLACK { shares } else { shares.map(|s| s / sum) }
 }
 
 /// African, Asian, European shares that sum to 1.

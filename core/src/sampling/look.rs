@@ -1,6 +1,6 @@
 //! Skin, hair, eyes and faces. Where the document says `"auto"` they follow ancestry, age and sex.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 use super::expression::face_units;
 use super::keys;
@@ -9,6 +9,7 @@ use super::quantile;
 use super::style;
 use super::value::{color, flag, item, linear, number};
 use crate::base::rng::{Draw, Stream};
+use crate::document::cast::{FixedColor, MemberLook};
 use crate::document::{self, Auto, Choice};
 use crate::scene::{Headwear, Look};
 
@@ -76,14 +77,43 @@ const IRIS_EUROPEAN: [([f64; 3], f64); 5] = [
 /// Everybody else's.
 const IRIS_OTHERS: [([f64; 3], f64); 2] = [([0.18, 0.10, 0.06], 0.6), ([0.28, 0.17, 0.09], 0.4)];
 
+/// What faces differ by most. A face has one of each, of those whose names begin like this, before
+/// it has any other: breadth and outline of the head; length, breadth and depth of the nose; breadth,
+/// height and depth of the mouth; chin; distance and height of the eyes; cheeks. They are the main
+/// measures of Farkas, "Anthropometry of the Head and Face" (2nd ed., 1994).
+const MAIN: [&[&str]; 12] = [
+    &["head-scale-horiz"],
+    &[
+        "head-oval",
+        "head-round",
+        "head-rectangular",
+        "head-square",
+        "head-diamond",
+        "head-triangular",
+        "head-fat",
+    ],
+    &["nose-scale-vert"],
+    &["nose-scale-horiz", "nose-width3"],
+    &["nose-scale-depth"],
+    &["mouth-scale-horiz"],
+    &["l-eye-trans-in", "l-eye-trans-out"],
+    &["mouth-trans-up", "mouth-trans-down"],
+    &["chin-bones", "chin-width", "chin-height"],
+    &["mouth-trans-forward", "mouth-trans-backward", "chin-prognathism"],
+    &["l-eye-trans-up", "l-eye-trans-down", "forehead-trans"],
+    &["l-cheek"],
+];
+
 /// These face targets change so much that they get a smaller standard deviation.
-const STRONG: [&str; 8] = [
+const STRONG: [&str; 10] = [
     "pointed",
     "triangle",
     "head-age",
-    "trans-",
+    "head-trans",
+    "neck-trans",
     "nubian",
-    "scale-vert",
+    "head-scale-vert",
+    "neck-scale-vert",
     "invertedtriangular",
     "asym",
 ];
@@ -110,46 +140,72 @@ pub(super) fn face_shapes(targets: &[String]) -> Vec<FaceShape> {
     shapes
 }
 
+/// What is known of a person stays, the rest is drawn.
 pub(super) fn look(
     look: &document::Look,
+    known: &MemberLook,
     faces: &[FaceShape],
     traits: PersonTraits,
     source: Source,
 ) -> Look {
     let of = |key| source.random_if(look.enabled).of(key);
-    let given = |auto: &Auto<document::Color>, key, otherwise: &dyn Fn(Draw) -> [f64; 3]| match auto
-    {
-        Auto::Auto(_) => otherwise(of(key)),
-        Auto::Given(law) => color(law, of(key)),
+    let given = |known: Option<FixedColor>,
+                 auto: &Auto<document::Color>,
+                 key,
+                 otherwise: &dyn Fn(Draw) -> [f64; 3]| match (known, auto) {
+        (Some(known), _) => known.linear(),
+        (None, Auto::Auto(_)) => otherwise(of(key)),
+        (None, Auto::Given(law)) => color(law, of(key)),
     };
     let greying = of(keys::GREYING);
     let dyed = traits.age_years >= DYED_FROM_YEARS && flag(&look.dyed, of(keys::DYED));
-    let skin_color = given(&look.skin, keys::SKIN, &|draw| skin(traits, draw));
-    let hair_color = given(&look.hair_color, keys::HAIR_COLOR, &|draw| {
+    let skin_color = given(known.skin, &look.skin, keys::SKIN, &|draw| skin(traits, draw));
+    let hair_color = given(known.hair_color, &look.hair_color, keys::HAIR_COLOR, &|draw| {
         if dyed { dye(of(keys::DYE)) } else { hair_color(traits, draw, greying) }
     });
     Look {
         skin_color,
-        hair: chosen(&look.hair, of(keys::HAIR), &|draw| style::hair(traits, draw)),
+        hair: chosen(known.hair, &look.hair, of(keys::HAIR), &|draw| style::hair(traits, draw)),
         hair_color,
-        beard: chosen(&look.beard, of(keys::BEARD), &|draw| style::beard(traits, draw)),
+        beard: chosen(known.beard, &look.beard, of(keys::BEARD), &|draw| {
+            style::beard(traits, draw)
+        }),
         headwear: Headwear {
-            kind: chosen(&look.headwear, of(keys::HEADWEAR), &|draw| style::headwear(traits, draw)),
-            color: given(&look.headwear_color, keys::HEADWEAR_COLOR, &|draw| felt(draw)),
+            kind: chosen(known.headwear, &look.headwear, of(keys::HEADWEAR), &|draw| {
+                style::headwear(traits, draw)
+            }),
+            color: given(
+                known.headwear_color,
+                &look.headwear_color,
+                keys::HEADWEAR_COLOR,
+                &|draw| felt(draw),
+            ),
         },
-        glasses: chosen(&look.glasses, of(keys::GLASSES), &|draw| style::glasses(traits, draw)),
-        iris_color: given(&look.iris_color, keys::IRIS, &|draw| iris(traits, draw)),
-        freckles: freckles(skin_color, hair_color, traits.age_years, of(keys::FRECKLES)),
-        flush: flush(traits.age_years, of(keys::FLUSH)),
-        face: if look.enabled { face(look, faces, source) } else { Vec::new() },
+        glasses: chosen(known.glasses, &look.glasses, of(keys::GLASSES), &|draw| {
+            style::glasses(traits, draw)
+        }),
+        iris_color: given(known.iris_color, &look.iris_color, keys::IRIS, &|draw| {
+            iris(traits, draw)
+        }),
+        freckles: known.freckles.unwrap_or_else(|| {
+            freckles(skin_color, hair_color, traits.age_years, of(keys::FRECKLES))
+        }),
+        flush: known.flush.unwrap_or_else(|| flush(traits.age_years, of(keys::FLUSH))),
+        face: face(look, known, faces, source),
     }
 }
 
-/// What is given, or what follows from the person.
-fn chosen<T: Copy>(given: &Auto<Choice<T>>, draw: Draw, otherwise: &dyn Fn(Draw) -> T) -> T {
-    match given {
-        Auto::Auto(_) => otherwise(draw),
-        Auto::Given(choice) => *item(choice, draw),
+/// What is known, what is given, or what follows from the person.
+fn chosen<T: Copy>(
+    known: Option<T>,
+    given: &Auto<Choice<T>>,
+    draw: Draw,
+    otherwise: &dyn Fn(Draw) -> T,
+) -> T {
+    match (known, given) {
+        (Some(known), _) => known,
+        (None, Auto::Auto(_)) => otherwise(draw),
+        (None, Auto::Given(choice)) => *item(choice, draw),
     }
 }
 
@@ -228,14 +284,48 @@ fn felt(draw: Draw) -> [f64; 3] {
     linear(pick(&HEADWEAR_SRGB, draw))
 }
 
-/// Some shapes, each with the absolute value of a normal.
-fn face(look: &document::Look, shapes: &[FaceShape], source: Source) -> Vec<(String, f64)> {
+/// The shape and the expression of a face, by name.
+fn face(
+    look: &document::Look,
+    known: &MemberLook,
+    shapes: &[FaceShape],
+    source: Source,
+) -> Vec<(String, f64)> {
+    let listed = |amounts: &BTreeMap<String, f64>| -> Vec<(String, f64)> {
+        amounts.iter().map(|(name, amount)| (name.clone(), *amount)).collect()
+    };
+    let mut face = match &known.face {
+        Some(amounts) => listed(amounts),
+        None if look.enabled => face_shape(look, shapes, source),
+        None => Vec::new(),
+    };
+    face.extend(match &known.expression {
+        Some(amounts) => listed(amounts),
+        None if look.enabled => face_units(&look.expression, source),
+        None => Vec::new(),
+    });
+    face.sort_by(|a, b| a.0.cmp(&b.0));
+    face
+}
+
+/// Some shapes, the main ones first, each with the absolute value of a normal.
+fn face_shape(look: &document::Look, shapes: &[FaceShape], source: Source) -> Vec<(String, f64)> {
     let wanted = number(&look.face_targets, source.of(keys::FACE_COUNT)).round() as usize;
     let mut order: Stream = source.of(keys::FACE_ORDER).stream();
     let mut rest: Vec<usize> = (0..shapes.len()).collect();
+    let mut chosen = Vec::new();
+    for group in MAIN.iter().take(wanted) {
+        let is_of = |shape: usize| group.iter().any(|start| shapes[shape][0].starts_with(start));
+        let of: Vec<usize> = (0..rest.len()).filter(|i| is_of(rest[*i])).collect();
+        if !of.is_empty() {
+            chosen.push(rest.swap_remove(of[order.below(of.len())]));
+        }
+    }
+    while chosen.len() < wanted.min(shapes.len()) {
+        chosen.push(rest.swap_remove(order.below(rest.len())));
+    }
     let mut face = Vec::new();
-    for _ in 0..wanted.min(shapes.len()) {
-        let shape = rest.swap_remove(order.below(rest.len()));
+    for shape in chosen {
         // By the shape's own number: which others were chosen changes nothing.
         let u = source.of(keys::FACE_AMOUNT).lane(shape as u16).uniform();
         let strong = shapes[shape].iter().any(|name| STRONG.iter().any(|s| name.contains(s)));
@@ -243,8 +333,6 @@ fn face(look: &document::Look, shapes: &[FaceShape], source: Source) -> Vec<(Str
         let amount = (std * quantile::normal(u)).abs().min(look.face_max);
         face.extend(shapes[shape].iter().map(|name| (name.clone(), amount)));
     }
-    face.extend(face_units(&look.expression, source));
-    face.sort_by(|a, b| a.0.cmp(&b.0));
     face
 }
 
@@ -315,6 +403,23 @@ mod tests {
     }
 
     #[test]
+    fn every_face_has_one_of_each_main_shape() {
+        let figure = crate::library::figure::Figure::built_in().unwrap();
+        let names: Vec<String> = figure.face_shape_names().map(str::to_owned).collect();
+        let shapes = face_shapes(&names);
+        let law = document::Look { face_targets: 15.0.into(), ..Default::default() };
+        for frame in 0..30 {
+            let face = face_shape(&law, &shapes, Source::new(Draws::new(1, frame), 0));
+            for group in MAIN {
+                let is_of = |name: &str| group.iter().any(|start| name.starts_with(start));
+                assert!(face.iter().any(|(name, _)| is_of(name)), "{group:?} {face:?}");
+            }
+            let sides = face.iter().filter(|(name, _)| name.starts_with("r-")).count();
+            assert_eq!(face.len() - sides, 15);
+        }
+    }
+
+    #[test]
     fn left_and_right_get_the_same_amount() {
         let names =
             ["ears/l-ear-up", "ears/r-ear-up", "head-oval", "l-eye-big", "r-eye-big", "r-alone"];
@@ -324,7 +429,8 @@ mod tests {
         let expression = document::Expression { enabled: false, ..Default::default() };
         let law = document::Look { face_targets: 3.0.into(), expression, ..Default::default() };
         for frame in 0..50 {
-            let face = face(&law, &shapes, Source::new(Draws::new(1, frame), 0));
+            let face =
+                face(&law, &MemberLook::default(), &shapes, Source::new(Draws::new(1, frame), 0));
             let of = |name: &str| face.iter().find(|f| f.0 == name).map(|f| f.1);
             assert_eq!(of("ears/l-ear-up"), of("ears/r-ear-up"));
             assert_eq!(of("l-eye-big"), of("r-eye-big"));

@@ -7,12 +7,14 @@
 use std::sync::Arc;
 
 use crate::base::rng::Draws;
+use crate::document::cast::Member;
 use crate::document::{Choice, Document, Problem, file::Problems, validate};
-use crate::scene::Scene;
+use crate::scene::{Person, Scene};
 
 mod background;
 mod body;
 mod camera;
+mod cast;
 mod expression;
 mod growth;
 mod keys;
@@ -36,6 +38,8 @@ pub use value::number;
 pub struct Catalogue {
     /// Local face targets of the figure. Those named `l-...` and `r-...` alike are one shape.
     pub face_targets: Vec<String>,
+    /// Units of expression and gaze of the figure's face.
+    pub face_units: Vec<String>,
     /// Motion clips.
     pub clips: Vec<Activity>,
     /// Poses.
@@ -128,6 +132,31 @@ impl Sampler {
     }
 }
 
+impl Sampler {
+    /// Everybody who recurs over the frames, in the order of their ids, as the config could list
+    /// them; nobody where nobody recurs. What an `each` sets is that of the slot of the same number.
+    pub fn members(&self) -> impl ExactSizeIterator<Item = Member> {
+        let Self { document, catalogue, faces } = self;
+        let count = document.people.identity_count().unwrap_or(0);
+        (0..count)
+            .map(move |id| people::member(&document.people, catalogue, faces, document.seed, id))
+    }
+
+    /// Everybody who stands in a frame, by their instance ids (slot plus one), as the config could
+    /// list them.
+    #[must_use]
+    pub fn members_of_frame(&self, frame: u32) -> Vec<(u32, Member)> {
+        let Self { document, catalogue, faces } = self;
+        let people =
+            people::people(&document.people, catalogue, faces, Draws::new(document.seed, frame));
+        let member = |p: Person| {
+            let what = (&p.body, &p.look, &p.outfit);
+            (p.slot + 1, cast::member(p.name.as_deref(), what, catalogue))
+        };
+        people.into_iter().map(member).collect()
+    }
+}
+
 /// How many people and occluders a frame holds. The document must be valid.
 #[must_use]
 pub fn counts(document: &Document, frame: u32) -> Counts {
@@ -172,6 +201,7 @@ pub fn check_assets(document: &Document, catalogue: &Catalogue) -> Vec<Problem> 
         }
     }
     if people.enabled {
+        cast::check(people, catalogue, &mut problems);
         check_poses("people.pose.clip", &people.pose.clip, catalogue, &mut problems);
         // What has no share is never looked up.
         if people.pose.blend.share.bounds().1 > 0.0 {

@@ -7,20 +7,22 @@ use super::people::{PersonTraits, Source};
 use super::value::{color, flag, item, number};
 use super::{keys, outfit_table, quantile};
 use crate::base::rng::{Draw, Key};
+use crate::document::cast::MemberWardrobe;
 use crate::document::{self, Auto, Choice, Color, ColorLaw, OutfitRow, Param, Wardrobe};
 use crate::scene::{Bottom, BottomKind, Outer, OuterKind, Outfit, Shoes, Top, TopKind};
 
-/// The cut of the clothes lasts as long as the person does, their colours and patterns are drawn
-/// anew.
+/// The cut of the clothes lasts as long as the person does, and what is known of it stays; their
+/// colours and patterns are drawn anew.
 pub(super) fn outfit(
     wardrobe: &Wardrobe,
+    known: &MemberWardrobe,
     patterns: &[String],
     traits: PersonTraits,
     lasting: Source,
     here: Source,
 ) -> Outfit {
     let (lasting, here) = (lasting.random_if(wardrobe.enabled), here.random_if(wardrobe.enabled));
-    let drawing = Drawing { patterns, lasting, here };
+    let drawing = Drawing { known, patterns, lasting, here };
     let row = drawing.row(wardrobe, traits);
     let shoes = &wardrobe.shoes;
     Outfit {
@@ -28,9 +30,12 @@ pub(super) fn outfit(
         bottom: drawing.bottom(&wardrobe.bottom, row),
         outer: drawing.outer(&wardrobe.outer, row),
         shoes: Shoes {
-            kind: drawing.kind(&shoes.kind, &row.shoes, keys::SHOE_KIND),
+            kind: drawing.kind(known.shoes.kind, &shoes.kind, &row.shoes, keys::SHOE_KIND),
             color: color(&shoes.color, here.of(keys::SHOE_COLOR)),
-            socks: number(&shoes.socks, lasting.of(keys::SOCKS)),
+            socks: known
+                .shoes
+                .socks
+                .unwrap_or_else(|| number(&shoes.socks, lasting.of(keys::SOCKS))),
             sock_color: color(&shoes.sock_color, here.of(keys::SOCK_COLOR)),
         },
     }
@@ -38,6 +43,7 @@ pub(super) fn outfit(
 
 /// What one person's garments are drawn from.
 struct Drawing<'a> {
+    known: &'a MemberWardrobe,
     patterns: &'a [String],
     lasting: Source,
     here: Source,
@@ -63,24 +69,37 @@ impl Drawing<'_> {
         &rows[quantile::index(u, rows.iter().map(weight))]
     }
 
-    fn kind<T: Copy>(&self, given: &Auto<Choice<T>>, table: &Choice<T>, key: Key) -> T {
+    fn kind<T: Copy>(
+        &self,
+        known: Option<T>,
+        given: &Auto<Choice<T>>,
+        table: &Choice<T>,
+        key: Key,
+    ) -> T {
         let choice = match given {
             Auto::Auto(_) => table,
             Auto::Given(choice) => choice,
         };
-        *item(choice, self.lasting.of(key))
+        known.unwrap_or_else(|| *item(choice, self.lasting.of(key)))
     }
 
     fn top(&self, top: &document::Top, row: &OutfitRow) -> Top {
-        let kind = self.kind(&top.kind, &row.top, keys::TOP_KIND);
+        let known = &self.known.top;
+        let kind = self.kind(known.kind, &top.kind, &row.top, keys::TOP_KIND);
         let cut = |key| self.lasting.of(key);
         let pattern = self.here.of(keys::TOP_PATTERN);
         let [sleeve, neckline, looseness_m] = top_cut(kind);
         Top {
             kind,
-            sleeve: given_or(&top.sleeve, &sleeve, cut(keys::TOP_SLEEVE)),
-            neckline: given_or(&top.neckline, &neckline, cut(keys::TOP_NECKLINE)),
-            looseness_m: given_or(&top.looseness_m, &looseness_m, cut(keys::TOP_LOOSENESS)),
+            sleeve: known
+                .sleeve
+                .unwrap_or_else(|| given_or(&top.sleeve, &sleeve, cut(keys::TOP_SLEEVE))),
+            neckline: known
+                .neckline
+                .unwrap_or_else(|| given_or(&top.neckline, &neckline, cut(keys::TOP_NECKLINE))),
+            looseness_m: known.looseness_m.unwrap_or_else(|| {
+                given_or(&top.looseness_m, &looseness_m, cut(keys::TOP_LOOSENESS))
+            }),
             color: self.dye(&top.color, &CLOTH, keys::TOP_COLOR),
             texture: asset(&top.pattern, self.patterns, pattern).or_else(|| {
                 // What is not printed is knitted.
@@ -95,7 +114,8 @@ impl Drawing<'_> {
     }
 
     fn bottom(&self, bottom: &document::Bottom, row: &OutfitRow) -> Bottom {
-        let kind = self.kind(&bottom.kind, &row.bottom, keys::BOTTOM_KIND);
+        let known = &self.known.bottom;
+        let kind = self.kind(known.kind, &bottom.kind, &row.bottom, keys::BOTTOM_KIND);
         let cut = |key| self.lasting.of(key);
         let skirt = |from, to| {
             given_or(&bottom.skirt_length, &Param::uniform(from, to), cut(keys::BOTTOM_SKIRT))
@@ -125,9 +145,11 @@ impl Drawing<'_> {
         let colors = if jeans { &DENIM } else { &CLOTH };
         Bottom {
             kind,
-            length,
-            flare: number(&bottom.flare, cut(keys::BOTTOM_FLARE)),
-            looseness_m: given_or(&bottom.looseness_m, &loose, cut(keys::BOTTOM_LOOSENESS)),
+            length: known.length.unwrap_or(length),
+            flare: known.flare.unwrap_or_else(|| number(&bottom.flare, cut(keys::BOTTOM_FLARE))),
+            looseness_m: known.looseness_m.unwrap_or_else(|| {
+                given_or(&bottom.looseness_m, &loose, cut(keys::BOTTOM_LOOSENESS))
+            }),
             color: self.dye(&bottom.color, colors, keys::BOTTOM_COLOR),
             texture,
             hue_offset_deg: number(&bottom.hue_offset_deg, self.here.of(keys::BOTTOM_HUE)),
@@ -135,19 +157,20 @@ impl Drawing<'_> {
     }
 
     fn outer(&self, outer: &document::Outer, row: &OutfitRow) -> Outer {
-        let kind = self.kind(&outer.kind, &row.outer, keys::OUTER_KIND);
+        let known = &self.known.outer;
+        let kind = self.kind(known.kind, &outer.kind, &row.outer, keys::OUTER_KIND);
         let loose = match kind {
             OuterKind::Coat => Param::uniform(0.008, 0.018),
             _ => Param::uniform(0.006, 0.014),
         };
         Outer {
             kind,
-            open: flag(&outer.open, self.lasting.of(keys::OUTER_OPEN)),
-            looseness_m: given_or(
-                &outer.looseness_m,
-                &loose,
-                self.lasting.of(keys::OUTER_LOOSENESS),
-            ),
+            open: known
+                .open
+                .unwrap_or_else(|| flag(&outer.open, self.lasting.of(keys::OUTER_OPEN))),
+            looseness_m: known.looseness_m.unwrap_or_else(|| {
+                given_or(&outer.looseness_m, &loose, self.lasting.of(keys::OUTER_LOOSENESS))
+            }),
             color: self.dye(&outer.color, &COAT, keys::OUTER_COLOR),
             texture: asset(&outer.pattern, self.patterns, self.here.of(keys::OUTER_PATTERN)),
             hue_offset_deg: number(&outer.hue_offset_deg, self.here.of(keys::OUTER_HUE)),

@@ -5,10 +5,10 @@ use glam::DVec3;
 use super::look::FaceShape;
 use super::place::{PEOPLE, places};
 use super::value::{number, rotation};
-use super::{Catalogue, body, keys, look, outfit, pose};
+use super::{Catalogue, body, cast, keys, look, outfit, pose};
 use crate::base::rng::{Draw, Draws, Key};
-use crate::document;
-use crate::scene::{Body, Person, Placement, Sex};
+use crate::document::{self, cast::Member};
+use crate::scene::{Body, Look, Outfit, Person, Placement, Sex};
 
 pub(super) fn people(
     people: &document::People,
@@ -19,39 +19,75 @@ pub(super) fn people(
     if !people.enabled {
         return Vec::new();
     }
+    let company = Company { people, catalogue, faces };
     let places = places(&people.placement, &PEOPLE, draws).points;
-    let identities = people.identities.map(|count| Identities::new(count, draws));
+    let identities = people.identity_count().map(|count| Identities::new(count, draws));
     let person = |(slot, position_m)| {
         let here = Source::new(draws, slot);
         let identity = identities.map(|i| i.of_slot(slot));
         // Whoever recurs has the numbers of an identity instead of those of a frame.
-        let of_identity =
-            |id| Source { turn: slot, ..Source::new(Draws::new(draws.seed(), id), 0) };
-        let lasting = identity.map_or(here, of_identity);
-        let body = body::body(&people.body, lasting.random_if(people.body.enabled));
-        let traits = PersonTraits::new(&body);
+        let lasting = identity.map_or(here, |id| Source::of_identity(draws.seed(), id, slot));
+        let (body, look, outfit) = company.person(identity, lasting, here);
         let turn = draws.of(keys::PERSON_ROTATION, slot);
         Person {
             slot,
             identity,
+            name: identity.and_then(|id| company.listed(id)).and_then(|m| m.name.clone()),
             placement: Placement {
                 position_m,
                 rotation: rotation(&people.rotation_deg, DVec3::ZERO, turn),
                 scale: DVec3::splat(number(&people.scale, draws.of(keys::PERSON_SCALE, slot))),
             },
-            look: look::look(&people.look, faces, traits, lasting),
-            outfit: outfit::outfit(
-                &people.wardrobe,
-                &catalogue.cloth_patterns,
-                traits,
-                lasting,
-                here,
-            ),
-            pose: pose::pose(&people.pose, catalogue, here),
             body,
+            look,
+            outfit,
+            pose: pose::pose(&people.pose, catalogue, here),
         }
     };
     places.into_iter().map(person).collect()
+}
+
+/// Somebody who recurs, as a complete member; `each` in the document counts identities here.
+pub(super) fn member(
+    people: &document::People,
+    catalogue: &Catalogue,
+    faces: &[FaceShape],
+    seed: u64,
+    id: u32,
+) -> Member {
+    let company = Company { people, catalogue, faces };
+    let lasting = Source::of_identity(seed, id, id);
+    let (body, look, outfit) = company.person(Some(id), lasting, lasting);
+    let name = company.listed(id).and_then(|m| m.name.as_deref());
+    cast::member(name, (&body, &look, &outfit), catalogue)
+}
+
+/// What people are drawn from.
+#[derive(Clone, Copy)]
+struct Company<'a> {
+    people: &'a document::People,
+    catalogue: &'a Catalogue,
+    faces: &'a [FaceShape],
+}
+
+impl<'a> Company<'a> {
+    fn listed(self, id: u32) -> Option<&'a Member> {
+        self.people.cast.get(id as usize)
+    }
+
+    /// Body, look and clothes of somebody.
+    fn person(self, identity: Option<u32>, lasting: Source, here: Source) -> (Body, Look, Outfit) {
+        let Self { people, catalogue, faces } = self;
+        let nobody = Member::default();
+        let known = identity.and_then(|id| self.listed(id)).unwrap_or(&nobody);
+        let body = body::body(&people.body, &known.body, lasting.random_if(people.body.enabled));
+        let traits = PersonTraits::new(&body);
+        let look = look::look(&people.look, &known.look, faces, traits, lasting);
+        let patterns = &catalogue.cloth_patterns;
+        let outfit =
+            outfit::outfit(&people.wardrobe, &known.wardrobe, patterns, traits, lasting, here);
+        (body, look, outfit)
+    }
 }
 
 /// Where a person's random numbers come from: a slot of the frame, or what lasts over frames.
@@ -66,6 +102,11 @@ pub(super) struct Source {
 impl Source {
     pub(super) const fn new(draws: Draws, slot: u32) -> Self {
         Self { draws, slot, turn: slot }
+    }
+
+    /// What an identity is drawn from, in a slot.
+    const fn of_identity(seed: u64, id: u32, turn: u32) -> Self {
+        Self { turn, ..Self::new(Draws::new(seed, id), 0) }
     }
 
     pub(super) const fn random_if(self, random: bool) -> Self {

@@ -12,6 +12,9 @@ pub struct Person {
     /// Who of the people that recur over frames it is; absent if nobody does.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub identity: Option<u32>,
+    /// What the config calls this person, if it does.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub name: Option<String>,
     /// Where the person stands: the model's origin is on the ground between the feet at rest,
     /// and the posed body's lowest point touches model y = 0.
     pub placement: Placement,

@@ -116,6 +116,55 @@ fn hostile_values_are_refused_with_their_path() {
             "people.scale.normal",
         ),
         ("/people/scale", json!({"lognormal": {"median": 1, "sigma": 1}}), "people.scale"),
+        ("/people/identities", json!(0), "people.identities"),
+        ("/people/identities", json!(2_000_000), "people.identities"),
+        ("/people/cast", json!([{}, {"file": " "}]), "people.cast[1].file"),
+        ("/people/cast", json!([{"name": ""}]), "people.cast[0].name"),
+        ("/people/cast", json!([{"name": "a/b"}]), "people.cast[0].name"),
+        ("/people/cast", json!([{"name": "x".repeat(65)}]), "people.cast[0].name"),
+        ("/people/cast", json!([{"name": "a"}, {}, {"name": "a"}]), "people.cast[2].name"),
+        (
+            "/people/cast",
+            json!([{}, {}, {"body": {"age_years": 0}}]),
+            "people.cast[2].body.age_years",
+        ),
+        ("/people/cast", json!([{"body": {"age_years": 150}}]), "people.cast[0].body.age_years"),
+        ("/people/cast", json!([{"body": {"bmi_kg_m2": 5}}]), "people.cast[0].body.bmi_kg_m2"),
+        ("/people/cast", json!([{"body": {"bmi_kg_m2": 90}}]), "people.cast[0].body.bmi_kg_m2"),
+        (
+            "/people/cast",
+            json!([{"body": {"ancestry": [0, 0, 0]}}]),
+            "people.cast[0].body.ancestry",
+        ),
+        (
+            "/people/cast",
+            json!([{"body": {"ancestry": [1, -1, 0]}}]),
+            "people.cast[0].body.ancestry[1]",
+        ),
+        ("/people/cast", json!([{"look": {"skin": [0, 2, 0]}}]), "people.cast[0].look.skin[1]"),
+        (
+            "/people/cast",
+            json!([{"look": {"iris_color": {"linear": [0, 0, -1]}}}]),
+            "people.cast[0].look.iris_color.linear[2]",
+        ),
+        (
+            "/people/cast",
+            json!([{"look": {"expression": {"jawOpen": 1.5}}}]),
+            "people.cast[0].look.expression.jawOpen",
+        ),
+        (
+            "/people/cast",
+            json!([{"wardrobe": {"top": {"looseness_m": 1}}}]),
+            "people.cast[0].wardrobe.top.looseness_m",
+        ),
+        ("/people/cast", json!(vec![json!({}); 51]), "people.identities"),
+        ("/people/body/age_years", json!(0), "people.body.age_years"),
+        ("/people/body/age_years", json!(150), "people.body.age_years"),
+        (
+            "/people/body/sex",
+            json!({"choice": [["male", 0], ["female", 0]]}),
+            "people.body.sex.choice",
+        ),
         ("/people/body/age_years", json!(200), "people.body.age_years"),
         ("/people/body/age_years", json!({"poisson": 30}), "people.body.age_years"),
         ("/people/body/stature_m", json!(9), "people.body.stature_m"),
@@ -126,7 +175,18 @@ fn hostile_values_are_refused_with_their_path() {
         ),
         ("/people/body/muscle", json!({"binomial": {"n": 3, "p": 0.5}}), "people.body.muscle"),
         ("/people/body/bmi_kg_m2", json!(5), "people.body.bmi_kg_m2"),
+        ("/people/body/bmi_kg_m2", json!(90), "people.body.bmi_kg_m2"),
         ("/people/body/bmi_kg_m2", json!({"uniform": [20, 90]}), "people.body.bmi_kg_m2"),
+        (
+            "/people/body/ancestry",
+            json!({"choice": [["african", 0], ["asian", 0]]}),
+            "people.body.ancestry.choice",
+        ),
+        (
+            "/people/wardrobe/season",
+            json!({"choice": [["summer", 0]]}),
+            "people.wardrobe.season.choice",
+        ),
         ("/people/body/ancestry", json!({"shares": [0, 0, 0]}), "people.body.ancestry.shares"),
         (
             "/people/body/ancestry",
@@ -162,6 +222,35 @@ fn messages_say_the_rule_and_the_value() {
     let placement = json!({"mode": "poisson_disk", "depth_m": 0, "separation_m": -1});
     let found = problems_of(&with("/people/placement", placement));
     assert_eq!(found[0].to_string(), "people.placement.separation_m: must be > 0, got -1");
+}
+
+#[test]
+fn a_misspelt_member_is_named_with_what_was_meant() {
+    for (cast, path, suggestion) in [
+        (json!([{"flie": "a.json"}]), "people.cast[0].flie", "file"),
+        (json!([{}, {"body": {"age_year": 3}}]), "people.cast[1].body.age_year", "age_years"),
+        (json!([{"look": {"hair": "bunn"}}]), "people.cast[0].look.hair", "bun"),
+        (
+            json!([{"look": {"skin": {"liner": [0, 0, 0]}}}]),
+            "people.cast[0].look.skin.liner",
+            "linear",
+        ),
+        (
+            json!([{"wardrobe": {"shoes": {"kind": "boot"}}}]),
+            "people.cast[0].wardrobe.shoes.kind",
+            "boots",
+        ),
+    ] {
+        let found = problems_of(&with("/people/cast", cast));
+        assert_eq!(found.len(), 1, "{found:?}");
+        assert_eq!(
+            (found[0].path.as_str(), found[0].suggestion.as_deref()),
+            (path, Some(suggestion))
+        );
+    }
+    for cast in [json!({}), json!("maria"), json!([3]), json!([{"look": {"face": {"a": "x"}}}])] {
+        assert_eq!(problems_of(&with("/people/cast", cast.clone())).len(), 1, "{cast}");
+    }
 }
 
 #[test]

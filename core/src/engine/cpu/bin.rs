@@ -3,11 +3,13 @@
 //! The table spans only the tiles that the chunk touches, so that many small chunks cost little
 //! also in a large picture.
 
-use super::chunk::{Chunk, Triangle};
+use super::chunk::Chunk;
 
 /// Triangle indices by tile.
 #[derive(Default)]
 pub(super) struct Bins {
+    /// First and last column, then row of the tiles that each triangle may touch.
+    touched: Vec<[u16; 4]>,
     /// First and last column, then row of tiles that hold anything; first > last when none does.
     rect: [u32; 4],
     /// Where each tile's list starts, row by row within `rect`, then the end of the last.
@@ -17,15 +19,27 @@ pub(super) struct Bins {
 }
 
 impl Bins {
-    /// Sorts triangles into square tiles of `1 << tile_log2` pixels.
-    pub(super) fn fill(&mut self, triangles: &[Triangle], tile_log2: u32) {
-        self.rect = triangles.iter().fold([u32::MAX, 0, u32::MAX, 0], |r, t| {
-            let t = tiles(t, tile_log2);
+    /// Forgets all triangles.
+    pub(super) fn clear(&mut self) {
+        self.touched.clear();
+    }
+
+    /// Adds the next triangle, with the pixels that it may touch, to square tiles of
+    /// `1 << tile_log2` of them.
+    #[inline(always)]
+    pub(super) fn add(&mut self, pixels: &[u16; 4], tile_log2: u32) {
+        self.touched.push(pixels.map(|px| px >> tile_log2));
+    }
+
+    /// Sorts the triangles that were added.
+    pub(super) fn fill(&mut self) {
+        let rect = self.touched.iter().fold([u16::MAX, 0, u16::MAX, 0], |r, t| {
             [r[0].min(t[0]), r[1].max(t[1]), r[2].min(t[2]), r[3].max(t[3])]
         });
+        self.rect = rect.map(u32::from);
         self.starts.clear();
         self.list.clear();
-        if triangles.is_empty() {
+        if self.touched.is_empty() {
             return;
         }
         let [left, right, top, bottom] = self.rect;
@@ -33,15 +47,15 @@ impl Bins {
         let count = columns * (bottom - top + 1) as usize;
         // Counts stand two places on, so that after filling every start stands at its own place.
         self.starts.resize(count + 2, 0);
-        for t in triangles {
-            each_tile(tiles(t, tile_log2), self.rect, |tile| self.starts[tile + 2] += 1);
+        for tiles in &self.touched {
+            each_tile(tiles.map(u32::from), self.rect, |tile| self.starts[tile + 2] += 1);
         }
         for i in 2..self.starts.len() {
             self.starts[i] += self.starts[i - 1];
         }
         self.list.resize(self.starts[count + 1] as usize, 0);
-        for (index, t) in triangles.iter().enumerate() {
-            each_tile(tiles(t, tile_log2), self.rect, |tile| {
+        for (index, tiles) in self.touched.iter().enumerate() {
+            each_tile(tiles.map(u32::from), self.rect, |tile| {
                 let at = &mut self.starts[tile + 1];
                 self.list[*at as usize] = index as u32;
                 *at += 1;
@@ -116,12 +130,6 @@ impl ChunksByTile {
         let tile = (y * self.columns + x) as usize;
         &self.list[self.starts[tile] as usize..self.starts[tile + 1] as usize]
     }
-}
-
-/// First and last column, then row of the tiles that a triangle may touch.
-#[inline(always)]
-fn tiles(t: &Triangle, tile_log2: u32) -> [u32; 4] {
-    t.pixels.map(|px| u32::from(px) >> tile_log2)
 }
 
 /// Calls a function with the place, row by row within `rect`, of each of a triangle's tiles.

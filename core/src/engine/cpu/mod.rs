@@ -43,7 +43,8 @@ use self::project::{Projection, ScreenVertex};
 use self::samples::TILE;
 use self::setup::Target;
 use self::shade::{Geometry, Lighting, Rays, Stage, Surface};
-use self::shadow::{Bounds, ShadowMap, ShadowView, SunAxes, SunShadow};
+use self::shadow::map::{ShadowMap, SunShadow};
+use self::shadow::{Bounds, ShadowView, SunAxes};
 use self::simd::{F32x8, Level};
 use self::tile::{Row, Scratch, Shading, TilePass};
 use super::{Engine, EngineError};
@@ -188,7 +189,7 @@ impl Buffers {
         Ok(frame)
     }
 
-    /// Fits and rasters the sun's shadow map; nothing if no shadow can be seen.
+    /// Fits the sun's shadow map and sets up what it will show; nothing if no shadow can be seen.
     fn shadow(
         &mut self,
         level: Level,
@@ -220,9 +221,7 @@ impl Buffers {
             self.casting.sort_by_tile(view.projection.size, target.tile_log2);
             Ok(())
         })?;
-        times.measure("shadow raster", || {
-            self.shadow_map.raster(level, &self.casting, view.projection.size);
-        });
+        self.shadow_map.restart(view.projection.size);
         Ok(Some(view))
     }
 
@@ -269,7 +268,9 @@ impl Buffers {
         frame.picture = shades.then(|| vec![0; pixels * 3]);
         frame.object_ids = resolves.then(|| vec![0; pixels]);
         frame.depth_m = resolves.then(|| vec![0.0; pixels]);
-        let shadow = shadow.map(|view| SunShadow { map: &self.shadow_map, view });
+        let (map, casting) = (&self.shadow_map, &self.casting);
+        let raster_time = shadow.map(|_| || map.raster_time());
+        let shadow = shadow.map(|view| SunShadow { map, view, casting, level });
         let pass = TilePass {
             level,
             list,
@@ -295,6 +296,9 @@ impl Buffers {
         });
         let used = used.into_inner().unwrap_or_else(PoisonError::into_inner);
         used.iter().for_each(|scratch| scratch.report(times));
+        if let Some(raster_time) = raster_time {
+            times.move_part("shade", "shadow raster", raster_time());
+        }
         frame.object_samples = reduces.then(|| {
             let mut sums = vec![ObjectSamples::default(); list.objects.len()];
             used.iter().for_each(|scratch| reduce::merge(&mut sums, &scratch.sums));

@@ -7,7 +7,7 @@ use super::chunk::{Chunk, DepthPlane, Face, Triangle};
 use super::project::{Projection, SCREEN_BITS, ScreenVertex, Vertex};
 use super::samples::{Layout, RASTER_BITS, TILE};
 use super::shadow::SunAxes;
-use super::simd::kernel;
+use super::simd::{I32x8, LANES, Mask8, kernel, unzipped};
 use super::{clip, shadow};
 
 /// Triangles up to this size have edge functions below 2^31 all over a tile: with extent E and
@@ -17,6 +17,11 @@ const SMALL_PX: i32 = 192;
 /// Below this thickness a triangle's depth is taken from its longest edge alone, as its slope
 /// would be made of rounding; 1/512 pixel in 16.16 fixed point.
 const SLIVER: f64 = 128.0;
+
+/// Binary digits that the raster has fewer than [`ScreenVertex`].
+const SNAP_BITS: u32 = SCREEN_BITS - RASTER_BITS;
+/// Half a step of the raster.
+const HALF: i32 = 1 << (SNAP_BITS - 1);
 
 /// What triangles are set up for.
 pub(super) struct Target<'a> {
@@ -69,7 +74,6 @@ kernel! {
     fn set_up(chunk: &mut Chunk, mesh_triangles: &[[u32; 3]], target: &Target<'_>) = set_up_body
 }
 
-// Triangle by triangle; as a kernel it gets the instructions of the detected processor.
 #[inline(always)]
 fn set_up_body<const AVX2: bool>(
     chunk: &mut Chunk,
@@ -80,24 +84,177 @@ fn set_up_body<const AVX2: bool>(
     chunk.faces.clear();
     chunk.crossing.clear();
     chunk.border.clear();
-    for triangle in &mesh_triangles[chunk.source.clone()] {
-        let corners = triangle.map(|v| v + chunk.first_vertex);
-        let v = corners.map(|c| target.screen[c as usize]);
-        if v.iter().any(|v| v.x == ScreenVertex::OUTSIDE) {
-            chunk.crossing.push(corners);
-        } else if let Some(t) = cull(chunk, &v, target) {
-            let plane = plane(&v);
-            if target.sun.is_some() && reaches_over_border(&v, target) {
-                chunk.border.push(corners);
-            }
-            chunk.push(t.with_plane(plane), corners, target);
-        }
+    chunk.bins.clear();
+    let (eights, rest) = mesh_triangles[chunk.source.clone()].as_chunks();
+    for triangles in eights {
+        set_up_eight::<AVX2>(chunk, triangles, target);
+    }
+    for triangle in rest {
+        set_up_one(chunk, triangle.map(|v| v + chunk.first_vertex), target);
     }
     clip::add_crossing(chunk, target);
     if let Some(sun) = target.sun {
         clip::bound_border(chunk, target, sun);
     }
-    chunk.bins.fill(&chunk.triangles, target.tile_log2);
+    chunk.bins.fill();
+}
+
+/// Sets up one triangle, of any size.
+#[inline(always)]
+fn set_up_one(chunk: &mut Chunk, corners: [u32; 3], target: &Target<'_>) {
+    let v = corners.map(|c| target.screen[c as usize]);
+    if v.iter().any(|v| v.x == ScreenVertex::OUTSIDE) {
+        chunk.crossing.push(corners);
+    } else if let Some(t) = cull(chunk, &v, target) {
+        chunk.take(t, corners, &v, target);
+    }
+}
+
+/// Sets up eight triangles: most are dropped, so that the eight are looked at together and what
+/// is left one by one.
+#[inline(always)]
+fn set_up_eight<const AVX2: bool>(
+    chunk: &mut Chunk,
+    triangles: &[[u32; 3]; LANES],
+    target: &Target<'_>,
+) {
+    let corners = triangles.map(|t| t.map(|v| v + chunk.first_vertex));
+    let eight = Eight::<AVX2>::new(&corners, target);
+    let culled = eight.cull(chunk, target);
+    let mut left = culled.kept | eight.special;
+    while left != 0 {
+        let lane = left.trailing_zeros() as usize;
+        left &= left - 1;
+        let corners = corners[lane];
+        if eight.special >> lane & 1 == 1 {
+            set_up_one(chunk, corners, target);
+            continue;
+        }
+        let v = corners.map(|c| target.screen[c as usize]);
+        chunk.take(culled.triangle(lane, nearest(&v)), corners, &v, target);
+    }
+}
+
+/// Eight triangles in raster coordinates.
+struct Eight<const AVX2: bool> {
+    x: [I32x8<AVX2>; 3],
+    y: [I32x8<AVX2>; 3],
+    /// Which must be set up one by one: those with a corner that was not projected, and those too
+    /// large for areas of 32 bits.
+    special: u32,
+}
+
+/// Twice the area of a triangle is at most that of the rectangle round it: up to this size it
+/// stays below 2^31, also where the products that it is the difference of do not.
+const EIGHT_PX: i32 = 45;
+
+impl<const AVX2: bool> Eight<AVX2> {
+    #[inline(always)]
+    fn new(corners: &[[u32; 3]; LANES], target: &Target<'_>) -> Self {
+        let half = I32x8::splat(HALF);
+        let (mut x, mut y) = ([I32x8::ZERO; 3], [I32x8::ZERO; 3]);
+        let mut outside = Mask8::NONE;
+        for corner in 0..3 {
+            let mut both = [[0; 2]; LANES];
+            for lane in 0..LANES {
+                let v = &target.screen[corners[lane][corner] as usize];
+                both[lane] = [v.x, v.y];
+            }
+            let [fixed_x, fixed_y] = unzipped(both);
+            outside = outside | fixed_x.eq(I32x8::splat(ScreenVertex::OUTSIDE));
+            x[corner] = (fixed_x + half) >> SNAP_BITS;
+            y[corner] = (fixed_y + half) >> SNAP_BITS;
+        }
+        let limit = I32x8::splat(EIGHT_PX << RASTER_BITS);
+        let large = (most(&x) - least(&x)).gt(limit) | (most(&y) - least(&y)).gt(limit);
+        let special = (outside | large).bits();
+        Self { x, y, special }
+    }
+
+    /// As [`cull`]; nonsense where triangles are special.
+    #[inline(always)]
+    fn cull(&self, chunk: &Chunk, target: &Target<'_>) -> Culled<AVX2> {
+        let (x, y) = (&self.x, &self.y);
+        let area = (x[1] - x[0]) * (y[2] - y[0]) - (y[1] - y[0]) * (x[2] - x[0]);
+        let turned = I32x8::ZERO.gt(area);
+        let faces = match (chunk.double_sided, chunk.mirrored) {
+            (true, _) => turned | area.gt(I32x8::ZERO),
+            (false, true) => area.gt(I32x8::ZERO),
+            (false, false) => turned,
+        };
+        let [width, height] = target.projection.size;
+        let (across, in_x) = extent(x, width as i32, target);
+        let (down, in_y) = extent(y, height as i32, target);
+        let kept = (faces & in_x & in_y).bits() & !self.special;
+        let pixels = [across[0], across[1], down[0], down[1]];
+        Culled { x: swapped(x, turned), y: swapped(y, turned), pixels, kept }
+    }
+}
+
+/// Eight triangles in raster coordinates, clockwise, of which some may cover samples.
+struct Culled<const AVX2: bool> {
+    x: [I32x8<AVX2>; 3],
+    y: [I32x8<AVX2>; 3],
+    /// See [`Triangle::pixels`].
+    pixels: [I32x8<AVX2>; 4],
+    /// Which may.
+    kept: u32,
+}
+
+impl<const AVX2: bool> Culled<AVX2> {
+    #[inline(always)]
+    fn triangle(&self, lane: usize, nearest: f32) -> Triangle {
+        let lane = lane & (LANES - 1);
+        let ([x0, x1, x2], [y0, y1, y2]) = (&self.x, &self.y);
+        let [left, right, top, bottom] = &self.pixels;
+        Triangle {
+            x: [x0.0[lane], x1.0[lane], x2.0[lane]],
+            y: [y0.0[lane], y1.0[lane], y2.0[lane]],
+            plane: DepthPlane::default(),
+            nearest,
+            pixels: [
+                left.0[lane] as u16,
+                right.0[lane] as u16,
+                top.0[lane] as u16,
+                bottom.0[lane] as u16,
+            ],
+            large: false,
+        }
+    }
+}
+
+/// Corners with the second and third exchanged where wanted.
+#[inline(always)]
+fn swapped<const AVX2: bool>(v: &[I32x8<AVX2>; 3], wanted: Mask8<AVX2>) -> [I32x8<AVX2>; 3] {
+    [v[0], wanted.select_i32(v[2], v[1]), wanted.select_i32(v[1], v[2])]
+}
+
+#[inline(always)]
+fn least<const AVX2: bool>(v: &[I32x8<AVX2>; 3]) -> I32x8<AVX2> {
+    v[0].min(v[1]).min(v[2])
+}
+
+#[inline(always)]
+fn most<const AVX2: bool>(v: &[I32x8<AVX2>; 3]) -> I32x8<AVX2> {
+    v[0].max(v[1]).max(v[2])
+}
+
+/// First and last pixel, of so many, along one axis, and which triangles may cover a sample there.
+#[inline(always)]
+fn extent<const AVX2: bool>(
+    v: &[I32x8<AVX2>; 3],
+    size: i32,
+    target: &Target<'_>,
+) -> ([I32x8<AVX2>; 2], Mask8<AVX2>) {
+    let (low, high) = (least(v), most(v));
+    let step = I32x8::splat((1 << target.row_step_log2) - 1);
+    let first_row = I32x8::splat(target.first_row);
+    let row_from = (low - first_row + step) >> target.row_step_log2;
+    let row_to = (high - first_row) >> target.row_step_log2;
+    let first = (low >> RASTER_BITS).max(I32x8::ZERO);
+    let last = (high >> RASTER_BITS).min(I32x8::splat(size - 1));
+    let one = I32x8::splat(1);
+    ([first, last], (row_to + one).gt(row_from) & (last + one).gt(first))
 }
 
 impl Triangle {
@@ -108,6 +265,21 @@ impl Triangle {
 }
 
 impl Chunk {
+    /// Takes over a triangle whose corners were projected.
+    #[inline(always)]
+    fn take(
+        &mut self,
+        triangle: Triangle,
+        corners: [u32; 3],
+        v: &[ScreenVertex; 3],
+        target: &Target<'_>,
+    ) {
+        if target.sun.is_some() && reaches_over_border(v, target) {
+            self.border.push(corners);
+        }
+        self.push(triangle.with_plane(plane(v)), corners, target);
+    }
+
     /// Takes a triangle over.
     #[inline(always)]
     pub(super) fn push(&mut self, triangle: Triangle, corners: [u32; 3], target: &Target<'_>) {
@@ -115,6 +287,7 @@ impl Chunk {
             let normal = facing(&triangle.plane, target.projection);
             self.faces.push(Face { corners, normal });
         }
+        self.bins.add(&triangle.pixels, target.tile_log2);
         self.triangles.push(triangle);
     }
 }
@@ -123,8 +296,7 @@ impl Chunk {
 /// sample.
 #[inline(always)]
 pub(super) fn cull(chunk: &Chunk, v: &[ScreenVertex; 3], target: &Target<'_>) -> Option<Triangle> {
-    const HALF: i32 = 1 << (SCREEN_BITS - RASTER_BITS - 1);
-    let snap = |fixed: i32| (fixed + HALF) >> (SCREEN_BITS - RASTER_BITS);
+    let snap = |fixed: i32| (fixed + HALF) >> SNAP_BITS;
     let (mut x, mut y) = (v.map(|v| snap(v.x)), v.map(|v| snap(v.y)));
     let (ux, uy) = (i64::from(x[1] - x[0]), i64::from(y[1] - y[0]));
     let (wx, wy) = (i64::from(x[2] - x[0]), i64::from(y[2] - y[0]));
@@ -154,17 +326,22 @@ pub(super) fn cull(chunk: &Chunk, v: &[ScreenVertex; 3], target: &Target<'_>) ->
     if px0 > px1 || py0 > py1 {
         return None;
     }
-    // Plain comparisons: depths are numbers, and the standard functions look for those that are not.
-    let nearer = |a: f32, b: f32| if a > b { a } else { b };
-    let nearest = nearer(nearer(v[0].depth, v[1].depth), v[2].depth);
     Some(Triangle {
         x,
         y,
         plane: DepthPlane::default(),
-        nearest,
+        nearest: nearest(v),
         pixels: [px0 as u16, px1 as u16, py0 as u16, py1 as u16],
         large: (x1 - x0).max(y1 - y0) > SMALL_PX << RASTER_BITS,
     })
+}
+
+/// The largest depth of three.
+#[inline(always)]
+fn nearest(v: &[ScreenVertex; 3]) -> f32 {
+    // Plain comparisons: depths are numbers, and the standard functions look for those that are not.
+    let nearer = |a: f32, b: f32| if a > b { a } else { b };
+    nearer(nearer(v[0].depth, v[1].depth), v[2].depth)
 }
 
 /// Depth over the picture, from the vertices before they were snapped to the raster.

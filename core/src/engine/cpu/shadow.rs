@@ -1,22 +1,16 @@
-//! Shadow: depth seen from the sun, and how much of its light reaches a point.
+//! Shadow: where the sun's depth map lies.
 //!
 //! A parallel projection is fitted to where the visible surfaces and the shadows that can fall on
 //! them meet, with texels no finer than a pixel; casters are drawn whatever their distance towards
-//! the sun. Single-sided triangles cast where their front faces the sun. Look-ups filter four texels
-//! bilinearly (percentage-closer filtering, Reeves et al. 1987) and are moved off the surface along
-//! its normal (Holbert, "Saying goodbye to shadow acne", GDC 2011).
+//! the sun. The map itself, and how it is looked up, is in [`map`].
 
-use rayon::prelude::*;
+pub(super) mod map;
 
-use super::chunk::ChunkList;
 use super::project::{Projection, SCREEN_BITS, ScreenVertex, Vertex, positions8};
-use super::raster;
-use super::samples::BLOCK;
-use super::simd::{F32x8, I32x8, LANES, Level, Mask8, Vec3x8, kernel};
+use super::simd::{F32x8, I32x8, LANES, Mask8, Vec3x8, kernel};
 
 /// Side of a tile of the map in texels.
 pub(super) const TILE: usize = 64;
-const TILE_TEXELS: usize = TILE * TILE;
 /// Texels left free around what the map is fitted to.
 const MARGIN: f64 = 2.0;
 
@@ -217,163 +211,9 @@ impl ShadowView {
     }
 }
 
-/// The map: tiles of 64x64 texels, within them blocks of 4x4.
-#[derive(Default)]
-pub(super) struct ShadowMap {
-    /// Room for the largest map so far.
-    texels: Vec<f32>,
-    /// Which tiles hold anything but zeros.
-    dirty: Vec<bool>,
-    /// Columns and rows of texels.
-    size: [usize; 2],
-}
-
-impl ShadowMap {
-    /// Rasters the casters; tiles that none touches are only cleared if they need it.
-    pub(super) fn raster(&mut self, level: Level, casting: &ChunkList, size: [u32; 2]) {
-        let (chunks, by_tile) = (casting.as_slice(), casting.by_tile());
-        self.size = size.map(|side| side as usize);
-        let [columns, rows] = self.size.map(|side| side / TILE);
-        let count = columns * rows;
-        if self.dirty.len() < count {
-            self.dirty.resize(count, false);
-            self.texels.resize(count * TILE_TEXELS, 0.0);
-        }
-        let texels = self.texels[..count * TILE_TEXELS].par_chunks_mut(TILE_TEXELS);
-        let tiles = texels.zip(self.dirty[..count].par_iter_mut());
-        tiles.enumerate().with_min_len(8).for_each(|(index, (texels, dirty))| {
-            let tile = [(index % columns) as u32, (index / columns) as u32];
-            let touching = by_tile.of(tile);
-            if !touching.is_empty() {
-                let mut farthest = [0.0; TILE_TEXELS / BLOCK];
-                raster::raster_tile::<1, false, TILE>(
-                    level,
-                    chunks,
-                    touching,
-                    tile,
-                    texels,
-                    &mut [],
-                    &mut farthest,
-                );
-            } else if *dirty {
-                texels.fill(0.0);
-            }
-            *dirty = !touching.is_empty();
-        });
-    }
-}
-
-/// The map with its projection: what shading looks up.
-pub(super) struct SunShadow<'a> {
-    pub(super) map: &'a ShadowMap,
-    pub(super) view: ShadowView,
-}
-
-impl SunShadow<'_> {
-    /// The share of the sun's light, 0..1, that reaches points with these normals.
-    ///
-    /// The offset covers the change of depth over the filter's width on a plane of any slope:
-    /// that change is `texel * tan(angle)`, and an offset of h along the normal gains
-    /// `h / cos(angle)`. `extra_m` moves look-ups further off, for light that wraps round.
-    #[inline(always)]
-    pub(super) fn lit<const AVX2: bool>(
-        &self,
-        p: Vec3x8<AVX2>,
-        n: Vec3x8<AVX2>,
-        n_dot_l: F32x8<AVX2>,
-        extra_m: f32,
-    ) -> F32x8<AVX2> {
-        let view = &self.view;
-        let sine = (F32x8::ONE - n_dot_l * n_dot_l).max(F32x8::ZERO).sqrt();
-        let offset_m =
-            sine * F32x8::splat(1.5 * view.texel_m) + F32x8::splat(0.25 * view.texel_m + extra_m);
-        let q = p + n.scale(offset_m);
-        let half = F32x8::splat(0.5);
-        let (x, y) = (affine8(&view.rows[0], q) - half, affine8(&view.rows[1], q) - half);
-        let depth = affine8(&view.rows[2], q) + F32x8::splat(0.5 * view.texel_m * view.depth_per_m);
-        let [last_x, last_y] = self.map.size.map(|side| F32x8::splat(side as f32 - 1.0));
-        let inside = x.ge(F32x8::ZERO) & last_x.gt(x) & y.ge(F32x8::ZERO) & last_y.gt(y);
-        if !inside.any() {
-            return F32x8::ONE;
-        }
-        inside.select(
-            self.filter(inside.select(x, F32x8::ZERO), inside.select(y, F32x8::ZERO), depth),
-            F32x8::ONE,
-        )
-    }
-
-    /// Bilinear mean of four comparisons.
-    #[inline(always)]
-    fn filter<const AVX2: bool>(
-        &self,
-        x: F32x8<AVX2>,
-        y: F32x8<AVX2>,
-        depth: F32x8<AVX2>,
-    ) -> F32x8<AVX2> {
-        let (left, top) = (x.floor(), y.floor());
-        let (wx, wy) = (x - left, y - top);
-        let (left, top) = (left.round_i32(), top.round_i32());
-        let one = I32x8::splat(1);
-        let columns = [column_offset(left), column_offset(left + one)];
-        let tiles_per_row = (self.map.size[0] / TILE) as i32;
-        let rows = [row_offset(top, tiles_per_row), row_offset(top + one, tiles_per_row)];
-        let upper = self
-            .compare(rows[0] + columns[0], depth)
-            .mix(self.compare(rows[0] + columns[1], depth), wx);
-        let lower = self
-            .compare(rows[1] + columns[0], depth)
-            .mix(self.compare(rows[1] + columns[1], depth), wx);
-        upper.mix(lower, wy)
-    }
-
-    /// 1 where nothing in the map is nearer to the sun, else 0.
-    #[inline(always)]
-    fn compare<const AVX2: bool>(&self, index: I32x8<AVX2>, depth: F32x8<AVX2>) -> F32x8<AVX2> {
-        index.gather_f32(&self.map.texels).gt(depth).select(F32x8::ZERO, F32x8::ONE)
-    }
-}
-
-/// An affine function of eight points.
-#[inline(always)]
-fn affine8<const AVX2: bool>(row: &[f32; 4], p: Vec3x8<AVX2>) -> F32x8<AVX2> {
-    Vec3x8::splat([row[0], row[1], row[2]]).dot(p) + F32x8::splat(row[3])
-}
-
-/// What a texel's column adds to its place in the map.
-#[inline(always)]
-fn column_offset<const AVX2: bool>(x: I32x8<AVX2>) -> I32x8<AVX2> {
-    ((x >> 6) << 12) + (((x >> 2) & I32x8::splat(15)) << 4) + (x & I32x8::splat(3))
-}
-
-/// What a texel's row adds to its place in the map.
-#[inline(always)]
-fn row_offset<const AVX2: bool>(y: I32x8<AVX2>, tiles_per_row: i32) -> I32x8<AVX2> {
-    (y >> 6) * I32x8::splat(tiles_per_row << 12)
-        + (((y >> 2) & I32x8::splat(15)) << 8)
-        + ((y & I32x8::splat(3)) << 2)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::engine::cpu::samples::Layout;
-
-    #[test]
-    fn texels_are_found_where_the_raster_puts_them() {
-        // Within a tile of 64 texels the raster stores blocks of 4x4 row by row.
-        for (x, y) in [(0, 0), (3, 1), (4, 0), (63, 63), (64, 0), (17, 70), (127, 127)] {
-            let (tile, inner) = ((y / 64) * 2 + x / 64, [x % 64, y % 64]);
-            let block = inner[1] / 4 * 16 + inner[0] / 4;
-            let lane = inner[1] % 4 * 4 + inner[0] % 4;
-            assert_eq!(
-                Layout::<1>::BLOCK_16TH[lane],
-                [inner[0] as i32 % 4 * 16 + 8, inner[1] as i32 % 4 * 16 + 8]
-            );
-            let found = column_offset(I32x8::<false>::splat(x as i32))
-                + row_offset(I32x8::<false>::splat(y as i32), 2);
-            assert_eq!(found.0[0] as usize, tile * 4096 + block * 16 + lane);
-        }
-    }
 
     #[test]
     fn axes_are_a_right_handed_frame() {

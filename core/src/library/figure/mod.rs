@@ -215,6 +215,11 @@ impl Figure {
         self.data.local_names.iter().map(String::as_str).filter(|name| name.contains('-'))
     }
 
+    /// Names of those local targets that make expressions and gaze.
+    pub fn face_unit_names(&self) -> impl Iterator<Item = &str> {
+        self.data.local_names.iter().map(String::as_str).filter(|name| !name.contains('-'))
+    }
+
     /// Index of a local target.
     ///
     /// # Errors

@@ -23,8 +23,10 @@ use std::path::{Path, PathBuf};
 use serde_json::{Map, Value};
 
 use super::angle::{Angles, Reach, SIDE, SIDE_NAMES, TRUNK};
-use super::{Foot, Freedom, PREFIX, Pose, Poses, Root};
-use crate::document::{HandShape, Problem};
+use super::{Foot, Freedom, PREFIX, Pose, PoseFile, Poses, Root};
+use crate::base::hash::content_hash;
+use crate::document::file::MAX_BYTES;
+use crate::document::{self, HandShape, Problem};
 
 /// What can be wrong with poses.
 #[derive(Debug, thiserror::Error)]
@@ -35,6 +37,15 @@ pub enum PoseError {
     /// The JSON does not say poses, or one that no human body takes.
     #[error("pose file: {0}")]
     Problem(Problem),
+    /// Not text.
+    #[error("the pose file is not UTF-8 text: {0}; expected JSON")]
+    Text(#[from] std::str::Utf8Error),
+    /// More than poses need.
+    #[error("the pose file {path} has more than {MAX_BYTES} bytes; split it into several files")]
+    TooLarge {
+        /// The file.
+        path: PathBuf,
+    },
     /// A file cannot be read.
     #[error("the pose file {path} cannot be read: {source}")]
     Unreadable {
@@ -84,7 +95,7 @@ impl Poses {
         let all = fields(poses, "poses")?.iter();
         let mut poses = all.map(|(name, value)| pose(name, value)).collect::<Result<Vec<_>>>()?;
         poses.sort_by(|a, b| a.id.cmp(&b.id));
-        Ok(Self { poses })
+        Ok(Self { poses, files: Vec::new() })
     }
 
     /// These poses and those of all pose files that lie in some folders; whichever is read later
@@ -94,13 +105,17 @@ impl Poses {
     /// When a file cannot be read or is refused.
     pub fn with_folders(mut self, folders: &[PathBuf]) -> Result<Self> {
         for path in folders.iter().flat_map(|folder| files(folder)) {
-            let text = std::fs::read_to_string(&path)
-                .map_err(|source| PoseError::Unreadable { path: path.clone(), source })?;
-            let more = Self::parse(&text)
-                .map_err(|source| PoseError::In { path, source: Box::new(source) })?;
+            let bytes = document::file::read(&path)
+                .map_err(|source| PoseError::Unreadable { path: path.clone(), source })?
+                .ok_or_else(|| PoseError::TooLarge { path: path.clone() })?;
+            let within = |source| PoseError::In { path: path.clone(), source: Box::new(source) };
+            let text = std::str::from_utf8(&bytes).map_err(|e| within(e.into()))?;
+            let more = Self::parse(text).map_err(within)?;
             self.poses.retain(|p| more.get(&p.id).is_err());
             self.poses.extend(more.poses);
             self.poses.sort_by(|a, b| a.id.cmp(&b.id));
+            let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+            self.files.push(PoseFile { name, content_hash: content_hash(&bytes) });
         }
         Ok(self)
     }
@@ -114,11 +129,6 @@ fn files(folder: &Path) -> Vec<PathBuf> {
         entries.map(|e| e.path()).filter(|p| p.to_string_lossy().ends_with(FILE_ENDING)).collect();
     paths.sort();
     paths
-}
-
-/// Whether a folder holds a pose file.
-pub(in crate::library) fn is_in(folder: &Path) -> bool {
-    !files(folder).is_empty()
 }
 
 fn problem(path: &str, message: String) -> PoseError {
@@ -368,6 +378,7 @@ mod tests {
         }
         for (text, expected) in [
             ("{", "not JSON"),
+            ("", "not JSON"),
             ("{}", "poses: missing"),
             ("[]", "file: expected an object"),
             (r#"{"poses": {}, "more": 1}"#, "more: unknown"),
@@ -376,5 +387,35 @@ mod tests {
             let error = Poses::parse(text).unwrap_err().to_string();
             assert!(error.contains(expected), "{text}: {error}");
         }
+    }
+    #[test]
+    fn files_of_folders_are_read_remembered_and_refused_by_name() {
+        let dir = tempfile::tempdir().unwrap();
+        let path = dir.path().join("mine.poses.json");
+        let text = r#"{"poses": {"p": {"activity": "testing", "both": {"knee_flexion": 9}}}}"#;
+        std::fs::write(&path, text).unwrap();
+        let folders = [dir.path().to_owned()];
+        let poses = Poses::default().with_folders(&folders).unwrap();
+        assert_eq!(poses.ids().collect::<Vec<_>>(), ["pose/p"]);
+        let hash = content_hash(text.as_bytes());
+        assert_eq!(
+            poses.files,
+            [PoseFile { name: "mine.poses.json".to_owned(), content_hash: hash }]
+        );
+        let refused = |bytes: &[u8]| {
+            std::fs::write(&path, bytes).unwrap();
+            Poses::default().with_folders(&folders).unwrap_err().to_string()
+        };
+        for (bytes, expected) in [
+            (text.replace("knee", "neck").as_bytes(), "p.both.neck_flexion: unknown"),
+            (text.replace('9', "200").as_bytes(), "p.both.knee_flexion: must be a number from -5"),
+            (b"\xff\xfe".as_slice(), "not UTF-8"),
+        ] {
+            let error = refused(bytes);
+            assert!(error.contains(expected) && error.contains("mine.poses.json"), "{error}");
+        }
+        std::fs::File::create(&path).unwrap().set_len(MAX_BYTES + 1).unwrap();
+        let error = Poses::default().with_folders(&folders).unwrap_err().to_string();
+        assert!(error.contains("mine.poses.json has more than"), "{error}");
     }
 }

@@ -10,7 +10,6 @@ pub mod angle;
 mod file;
 
 pub use file::PoseError;
-pub(super) use file::is_in;
 
 use crate::document::HandShape;
 use angle::Angles;
@@ -84,6 +83,16 @@ impl Default for Freedom {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Poses {
     poses: Vec<Pose>,
+    files: Vec<PoseFile>,
+}
+
+/// A file of the config's folders that poses were read from.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct PoseFile {
+    /// Its name without the folder.
+    pub name: String,
+    /// BLAKE3 hash of its content, 64 hexadecimal digits.
+    pub content_hash: String,
 }
 
 impl Poses {
@@ -102,6 +111,12 @@ impl Poses {
     #[must_use]
     pub fn all(&self) -> &[Pose] {
         &self.poses
+    }
+
+    /// The files of the config's folders among what was read, in the order of the folders.
+    #[must_use]
+    pub fn files(&self) -> &[PoseFile] {
+        &self.files
     }
 
     /// All ids, in order.

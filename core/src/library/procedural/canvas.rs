@@ -55,6 +55,11 @@ pub(super) fn floor(v: f32) -> i32 {
     cut - i32::from(v < cut as f32)
 }
 
+/// What is above the largest whole number that is not above `v`.
+pub(super) fn fract(v: f32) -> f32 {
+    v - floor(v) as f32
+}
+
 /// Sine of an angle in turns, to 0.001: a parabola, refined once.
 pub(super) fn sin_turns(turns: f32) -> f32 {
     let t = turns - floor(turns + 0.5) as f32;
@@ -268,8 +273,9 @@ impl Canvas {
             .0
             .iter()
             .map(|p| {
-                let [r, g, b] = p.map(|v| (v.clamp(0.0, 1.0) * 255.0 + 0.5) as u8);
-                u32::from_le_bytes([r, g, b, 255])
+                // By way of i32, which machines convert to directly.
+                let [r, g, b] = p.map(|v| (v.clamp(0.0, 1.0) * 255.0 + 0.5) as i32 as u32);
+                r | g << 8 | b << 16 | 0xff00_0000
             })
             .collect();
         Texture::from_level0(LOG2_SIDE, encoding, texels)

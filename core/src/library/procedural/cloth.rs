@@ -5,7 +5,7 @@
 
 use super::Painting;
 use super::canvas::{
-    Canvas, Rgb, SIDE, WHITE, cos_turns, hex, hsv, lit, mix, palette, sin_turns, smooth,
+    Canvas, Rgb, SIDE, WHITE, cos_turns, fract, hex, hsv, lit, mix, palette, sin_turns, smooth,
 };
 use super::dice::Dice;
 use super::field::{Cells, Field};
@@ -137,9 +137,9 @@ pub(super) fn knit(dice: &mut Dice) -> Painting {
         .collect();
     let fuzz = Field::fbm(dice, 64, 3);
     let stitch = |x: f32, y: f32| {
-        let u = x / size % 1.0 - 0.5;
+        let u = fract(x / size) - 0.5;
         // Each leg of the V leans towards the middle.
-        let v = (y / size + u.abs() * 1.3).rem_euclid(1.0) - 0.5;
+        let v = fract(y / size + u.abs() * 1.3) - 0.5;
         (1.0 - 14.0 * (u.abs() - 0.25) * (u.abs() - 0.25)).max(0.0) * (1.0 - 2.6 * v * v).max(0.0)
     };
     let height = Field::from_fn(|x, y| stitch(x as f32 + 0.5, y as f32 + 0.5));

@@ -349,6 +349,21 @@ mod tests {
     }
 
     #[test]
+    fn normals_follow_the_height_at_every_place_and_over_the_sides() {
+        let mut dice = Dice::new("heights");
+        let height = Field((0..SIDE * SIDE).map(|_| dice.unit()).collect());
+        let at = |x: usize, y: usize| height.0[y % SIDE * SIDE + x % SIDE];
+        for (i, n) in normals(&height).0.iter().enumerate() {
+            let (x, y) = (i % SIDE, i / SIDE);
+            let along_u = at(x + 1, y) - at(x + SIDE - 1, y);
+            let along_v = at(x, y + 1) - at(x, y + SIDE - 1);
+            let [nx, ny, nz] = n.map(|v| 2.0 * v - 1.0);
+            let (wrong_u, wrong_v) = (nx / nz + 0.5 * along_u, ny / nz - 0.5 * along_v);
+            assert!(wrong_u.abs() < 1e-5 && wrong_v.abs() < 1e-5, "{x} {y}: {wrong_u} {wrong_v}");
+        }
+    }
+
+    #[test]
     fn normals_are_unit_point_outwards_and_follow_the_height() {
         // A ridge along v: its left flank faces left, its right one right.
         let ridge = Field::from_fn(|x, _| -((x as f32) - 256.0).abs());

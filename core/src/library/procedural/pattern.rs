@@ -2,8 +2,8 @@
 
 use super::Painting;
 use super::canvas::{
-    Canvas, Rgb, SIDE, cos_turns, floor, lit, luma, mix, palette, ramp, shaded_palette, sin_turns,
-    smooth,
+    Canvas, Rgb, SIDE, cos_turns, floor, fract, lit, luma, mix, palette, ramp, shaded_palette,
+    sin_turns, smooth,
 };
 use super::dice::Dice;
 use super::field::Field;
@@ -277,7 +277,7 @@ pub(super) fn weave(dice: &mut Dice) -> Painting {
     let fibres = [Field::noise(dice, 4, 128, 2, 0.8), Field::noise(dice, 128, 4, 2, 0.8)];
     let height = Field::from_fn(|x, y| {
         let (i, j) = (x / size as usize, y / size as usize);
-        let (u, v) = ((x as f32 + 0.5) / size % 1.0 - 0.5, (y as f32 + 0.5) / size % 1.0 - 0.5);
+        let (u, v) = (fract((x as f32 + 0.5) / size) - 0.5, fract((y as f32 + 0.5) / size) - 0.5);
         let across = if (i + j) % twill < twill / 2 { [u, v] } else { [v, u] };
         (1.0 - across[0] * across[0] * 2.2) * (1.0 - 3.6 * across[1] * across[1]).max(0.0)
     });

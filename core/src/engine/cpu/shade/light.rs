@@ -25,7 +25,7 @@ use super::GROUPS;
 use super::material::Look;
 use super::surface::Points;
 use crate::draw::abi::Lights;
-use crate::engine::cpu::shadow::SunShadow;
+use crate::engine::cpu::shadow::map::SunShadow;
 use crate::engine::cpu::simd::{F32x8, Vec3x8};
 
 /// How much further off the surface wrapped light looks up shadows, metres per unit of `wrap`:
@@ -165,10 +165,24 @@ impl<'a> Lighting<'a> {
                 }
             }
         }
+        let mut arriving = [Arriving::ZERO; GROUPS];
+        let arriving = &mut arriving[..out.len()];
         for &index in reaching {
             let light = self.points[index as usize];
-            for (reflector, out) in reflectors.iter().zip(out.iter_mut()) {
-                add_point_light::<AVX2, METAL>(&light, wrap, reflector, out);
+            // In two steps: what depends on nothing else is computed for all first, so that the
+            // processor need not wait for one group's roots and quotients before the next.
+            for (reflector, arriving) in reflectors.iter().zip(arriving.iter_mut()) {
+                *arriving = Arriving::new(&light, reflector);
+            }
+            let color = Vec3x8::splat(light.color_cd);
+            for ((reflector, arriving), out) in
+                reflectors.iter().zip(&*arriving).zip(out.iter_mut())
+            {
+                let Arriving { cosine, l_dot_v, share } = *arriving;
+                if cosine.gt(F32x8::splat(-wrap.by)).any() {
+                    let light = reflector.reflect::<METAL>(wrap, cosine, l_dot_v, (color, share));
+                    *out = *out + light;
+                }
             }
         }
     }
@@ -220,29 +234,35 @@ fn unit(v: [f32; 3]) -> [f32; 3] {
     v.map(|x| x / length)
 }
 
-/// Adds what eight fragments reflect of a point light.
-#[inline(always)]
-fn add_point_light<const AVX2: bool, const METAL: bool>(
-    light: &Point,
-    wrap: Wrap,
-    reflector: &Reflector<AVX2>,
-    out: &mut Vec3x8<AVX2>,
-) {
-    let to_light = Vec3x8::splat(light.position) - reflector.position;
-    let distance2 = to_light.dot(to_light).max(F32x8::splat(1e-12));
-    let distance = distance2.sqrt();
-    let facing = reflector.normal.dot(to_light);
-    if !facing.gt(distance * F32x8::splat(-wrap.by)).any() {
-        return;
+/// What arrives of a point light at eight fragments.
+#[derive(Clone, Copy)]
+struct Arriving<const AVX2: bool> {
+    /// Between normal and light.
+    cosine: F32x8<AVX2>,
+    /// Cosine between light and viewer.
+    l_dot_v: F32x8<AVX2>,
+    /// Illuminance of a surface that faces the light, over its intensity.
+    share: F32x8<AVX2>,
+}
+
+impl<const AVX2: bool> Arriving<AVX2> {
+    const ZERO: Self = Self { cosine: F32x8::ZERO, l_dot_v: F32x8::ZERO, share: F32x8::ZERO };
+
+    #[inline(always)]
+    fn new(light: &Point, reflector: &Reflector<AVX2>) -> Self {
+        let to_light = Vec3x8::splat(light.position) - reflector.position;
+        let distance2 = to_light.dot(to_light).max(F32x8::splat(1e-12));
+        let inverse = F32x8::ONE / distance2.sqrt();
+        let near = inverse.min(F32x8::splat(light.per_radius_m));
+        let in_range = distance2 * F32x8::splat(light.per_range_m2);
+        let window = (F32x8::ONE - in_range * in_range).max(F32x8::ZERO);
+        let share = near * window;
+        Self {
+            cosine: reflector.normal.dot(to_light) * inverse,
+            l_dot_v: to_light.dot(reflector.to_viewer) * inverse,
+            share: share * share,
+        }
     }
-    let inverse = F32x8::ONE / distance;
-    let near = inverse.min(F32x8::splat(light.per_radius_m));
-    let in_range = distance2 * F32x8::splat(light.per_range_m2);
-    let window = (F32x8::ONE - in_range * in_range).max(F32x8::ZERO);
-    let share = near * window;
-    let l_dot_v = to_light.dot(reflector.to_viewer) * inverse;
-    let light = (Vec3x8::splat(light.color_cd), share * share);
-    *out = *out + reflector.reflect::<METAL>(wrap, facing * inverse, l_dot_v, light);
 }
 
 /// Factor on f0 and offset of the surrounding's mirror term.

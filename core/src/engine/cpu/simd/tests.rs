@@ -1,5 +1,7 @@
 //! Both forms of every operation give the same bits.
 
+use std::sync::atomic::AtomicU32;
+
 use super::*;
 
 #[test]
@@ -51,12 +53,18 @@ fn every_operation_body<const AVX2: bool>(
     let (i, j) = (a.round_i32(), b.to_bits());
     let integers = [i, j, i + j, i - j, i * j, i & j, i | j, j << 5, j >> 7, i.shl_each(j >> 20)];
     out.extend(integers.map(|v| v.0.map(|lane| lane as u32)));
+    out.extend([i.min(j), i.max(j)].map(|v| v.0.map(|lane| lane as u32)));
+    out.push(mask.select_i32(i, j).0.map(|lane| lane as u32));
+    out.push([mask.bits(), other.bits(), i.eq(j).bits(), i.eq(i).bits(), 0, 0, 0, 0]);
+    let pairs = std::array::from_fn(|lane| [i.0[lane], j.0[lane]]);
+    out.extend(unzipped::<AVX2>(pairs).map(|v| v.0.map(|lane| lane as u32)));
     out.push(i.to_f32().0.map(f32::to_bits));
     let table: Vec<u32> = (0..1000).map(|v| v * v).collect();
     out.push(i.gather_u32(&table).0.map(|lane| lane as u32));
-    let table: Vec<f32> = table.iter().map(|v| *v as f32).collect();
-    out.push(j.gather_f32(&table).0.map(f32::to_bits));
-    out.push((j >> 22).gather_f32(&table).0.map(f32::to_bits));
+    let shared: Vec<AtomicU32> =
+        table.iter().map(|v| AtomicU32::new((*v as f32).to_bits())).collect();
+    out.push(j.gather_shared_f32(&shared).0.map(f32::to_bits));
+    out.push((j >> 22).gather_shared_f32(&shared).0.map(f32::to_bits));
     out.push(i.gt(j).select(a, b).0.map(f32::to_bits));
     let table: Vec<u32> = (0..1000).map(|v| v * v + 3).collect();
     out.extend(i.gather_pairs(&table).map(|v| v.0.map(|lane| lane as u32)));

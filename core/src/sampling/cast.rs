@@ -1,0 +1,123 @@
+//! People who are listed, and people as they can be listed.
+
+use std::collections::BTreeMap;
+
+use super::Catalogue;
+use crate::document::cast::{
+    FixedColor, Member, MemberBody, MemberBottom, MemberLook, MemberOuter, MemberShoes, MemberTop,
+    MemberWardrobe,
+};
+use crate::document::{People, Problem};
+use crate::scene::{Body, Headwear, Look, Outfit};
+
+/// What lasts of a person, complete: listed, it gives the same person in every config.
+pub(super) fn member(
+    name: Option<&str>,
+    (body, look, outfit): (&Body, &Look, &Outfit),
+    catalogue: &Catalogue,
+) -> Member {
+    Member {
+        file: None,
+        name: name.map(str::to_owned),
+        body: member_body(body),
+        look: member_look(look, catalogue),
+        wardrobe: member_wardrobe(outfit),
+    }
+}
+
+fn member_body(body: &Body) -> MemberBody {
+    let Body { sex, age_years, stature_m, bmi_kg_m2, muscle, proportions, ancestry, cup, firmness } =
+        *body;
+    MemberBody {
+        sex: Some(sex),
+        age_years: Some(age_years),
+        stature_m: Some(stature_m),
+        bmi_kg_m2: Some(bmi_kg_m2),
+        muscle: Some(muscle),
+        proportions: Some(proportions),
+        ancestry: Some(ancestry),
+        cup: Some(cup),
+        firmness: Some(firmness),
+    }
+}
+
+fn member_look(look: &Look, catalogue: &Catalogue) -> MemberLook {
+    let Look {
+        skin_color,
+        hair,
+        hair_color,
+        beard,
+        headwear: Headwear { kind: headwear, color: headwear_color },
+        glasses,
+        iris_color,
+        freckles,
+        flush,
+        face,
+    } = look;
+    let color = |rgb: &[f64; 3]| Some(FixedColor::from_linear(*rgb));
+    let (expression, face): (BTreeMap<_, _>, BTreeMap<_, _>) =
+        face.iter().cloned().partition(|(name, _)| catalogue.face_units.contains(name));
+    MemberLook {
+        skin: color(skin_color),
+        hair: Some(*hair),
+        hair_color: color(hair_color),
+        beard: Some(*beard),
+        headwear: Some(*headwear),
+        headwear_color: color(headwear_color),
+        glasses: Some(*glasses),
+        iris_color: color(iris_color),
+        freckles: Some(*freckles),
+        flush: Some(*flush),
+        face: Some(face),
+        expression: Some(expression),
+    }
+}
+
+/// Colours and patterns are left out: they do not last.
+fn member_wardrobe(outfit: &Outfit) -> MemberWardrobe {
+    let Outfit { top, bottom, outer, shoes } = outfit;
+    MemberWardrobe {
+        top: MemberTop {
+            kind: Some(top.kind),
+            sleeve: Some(top.sleeve),
+            neckline: Some(top.neckline),
+            looseness_m: Some(top.looseness_m),
+        },
+        bottom: MemberBottom {
+            kind: Some(bottom.kind),
+            length: Some(bottom.length),
+            flare: Some(bottom.flare),
+            looseness_m: Some(bottom.looseness_m),
+        },
+        outer: MemberOuter {
+            kind: Some(outer.kind),
+            open: Some(outer.open),
+            looseness_m: Some(outer.looseness_m),
+        },
+        shoes: MemberShoes { kind: Some(shoes.kind), socks: Some(shoes.socks) },
+    }
+}
+
+/// The shapes and units of listed faces that a catalogue does not hold, and files that nobody has
+/// read.
+pub(super) fn check(people: &People, catalogue: &Catalogue, problems: &mut Vec<Problem>) {
+    for (i, member) in people.cast.iter().enumerate() {
+        if member.file.is_some() {
+            let what = "the file was not read; load the config from its own file";
+            problems.push(Problem::new(format!("people.cast[{i}].file"), what));
+        }
+        let groups = [
+            ("face", &member.look.face, &catalogue.face_targets),
+            ("expression", &member.look.expression, &catalogue.face_units),
+        ];
+        for (group, amounts, known) in groups {
+            for name in amounts.iter().flat_map(BTreeMap::keys).filter(|name| !known.contains(name))
+            {
+                let path = format!("people.cast[{i}].look.{group}.{name}");
+                let kind = if group == "face" { "shape of a face" } else { "unit of expression" };
+                let problem = Problem::new(path, format!("there is no such {kind}"));
+                problems.push(problem.did_you_mean(name, known.iter().map(String::as_str)));
+            }
+        }
+    }
+}
