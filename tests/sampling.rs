@@ -188,6 +188,8 @@ fn a_switch_changes_nothing_else() {
                 "people/*/look/skin_color",
                 "people/*/look/hair_color",
                 "people/*/look/iris_color",
+                "people/*/look/freckles",
+                "people/*/look/flush",
                 "people/*/look/hair",
                 "people/*/look/beard",
                 "people/*/look/headwear",

@@ -31,9 +31,6 @@ const COVER_M: f64 = 0.025;
 /// A skirt's or a coat's cloth in front of hips and knees, likewise.
 const SKIRT_M: f64 = 0.08;
 
-/// Folds of cloth are drawn where a metre spans more pixels than this: about five to a fold.
-const RELIEF_PX_PER_M: f64 = 100.0;
-
 /// A person whose bones are settled.
 struct Posed<'a> {
     person: &'a Person,
@@ -180,13 +177,12 @@ fn add_mesh(
     dressed: &Dressed,
 ) -> Result<u32, DrawError> {
     let px_per_m = drawing.px_per_m(posed.center_in_view, posed.radius_m) * posed.scale;
-    let near = px_per_m > RELIEF_PX_PER_M;
     let list = &mut drawing.drawn.list;
     let index = list.objects.len() as u32;
     for part in &dressed.parts {
         let material = if drawing.options.shading && relevance.in_view {
             let surface = surface(part.kind, posed.person);
-            drawing.surfaces.of_person(&surface, near, drawing.library, list)?
+            drawing.surfaces.of_person(&surface, px_per_m, drawing.library, list)?
         } else {
             drawing.surfaces.plain(list)
         };

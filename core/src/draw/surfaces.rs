@@ -4,8 +4,9 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use super::{DrawError, DrawList, abi};
-use crate::geometry::surface::{Detail, Mask, Surface};
+use crate::geometry::surface::{Detail, Mask, Relief, Surface};
 use crate::library::Library;
+use crate::library::figure::NEUTRAL_TINT;
 use crate::library::texture::Texture;
 use crate::scene;
 
@@ -13,6 +14,11 @@ use crate::scene;
 const FOLDS: &str = "normal/detail/folds";
 /// Strength of the relief of cloth that has its own, knitwear and leather.
 const WEAVE_STRENGTH: f32 = 0.8;
+
+/// How many pixels of the picture a metre must span for what is only seen close up: furrows and
+/// freckles, strands, then the folds of cloth (about five pixels to a fold).
+const SKIN_PX_PER_M: f64 = 200.0;
+const FOLDS_PX_PER_M: f64 = 100.0;
 
 /// What has been put into a draw list so far.
 #[derive(Default)]
@@ -53,37 +59,62 @@ impl Surfaces {
         Ok(push(list, made))
     }
 
-    /// The surface of a part of a person; `near` where its relief can be made out.
+    /// The surface of a part of a person of whom a metre spans so many pixels.
     pub fn of_person(
         &mut self,
         surface: &Surface,
-        near: bool,
+        px_per_m: f64,
         library: &Library,
         list: &mut DrawList,
     ) -> Result<u32, DrawError> {
-        let albedo_map = self.optional(surface.texture.as_deref(), library, list)?;
+        let near = px_per_m > FOLDS_PX_PER_M;
+        let close = px_per_m > SKIN_PX_PER_M;
+        let figure = &library.figure;
+        let mut base_color = surface.base_color;
+        let albedo_map = match surface.tint.filter(|_| close) {
+            Some(freckles) => {
+                base_color = base_color.map(|c| c / NEUTRAL_TINT);
+                let id = format!("figure/head_tint/{}", freckles as u8);
+                Some(self.shared(&id, list, || Arc::clone(figure.head_tint(freckles))))
+            }
+            None => self.optional(surface.texture.as_deref(), library, list)?,
+        };
         let (detail, uv_repeat) = detail_texture(surface.detail);
-        let detail_map = self.optional(detail, library, list)?;
+        let aged = surface.detail == Detail::Age && close && surface.detail_strength > 0.0;
+        let detail_map = if aged {
+            Some(self.shared("figure/head_age", list, || Arc::clone(&figure.head_age()[0])))
+        } else {
+            self.optional(detail, library, list)?
+        };
         let mask = match surface.mask {
             Mask::None => None,
-            Mask::Skin(scalp, beard) => {
-                let id = format!("figure/skin_mask/{}/{}", scalp as u8, beard as u8);
-                let mask = || Arc::clone(library.figure.painted_skin_mask(scalp, beard));
-                Some(self.shared(&id, list, mask))
+            Mask::Head(scalp, beard) => {
+                let id = format!("figure/head_mask/{}/{}", scalp as u8, beard as u8);
+                Some(self.shared(&id, list, || Arc::clone(figure.head_mask(scalp, beard))))
+            }
+            Mask::Body => {
+                Some(self.shared("figure/body_mask", list, || Arc::clone(figure.body_mask())))
+            }
+            // Too fine to be seen from afar.
+            Mask::Sewn(_) if !near => None,
+            Mask::Sewn(kind) => {
+                let id = format!("figure/sewn/{}", kind as u8);
+                Some(self.shared(&id, list, || Arc::clone(figure.sewn_mask(kind))))
             }
             Mask::Eye => {
-                Some(self.shared("figure/eye_mask", list, || Arc::clone(library.figure.eye_mask())))
+                Some(self.shared("figure/eye_mask", list, || Arc::clone(figure.eye_mask())))
             }
         };
-        let own = surface.texture.as_deref().and_then(|id| library.textures.normal_map(id));
-        let (relief, normal_strength) = match &own {
-            Some(id) => (id.as_str(), WEAVE_STRENGTH),
-            None => (FOLDS, surface.relief_strength),
+        let (normal_map, normal_strength) = if aged {
+            let normals = || Arc::clone(&figure.head_age()[1]);
+            (Some(self.shared("figure/head_normals", list, normals)), surface.relief_strength)
+        } else if near && surface.relief_strength > 0.0 {
+            self.relief(surface, library, list)?
+        } else {
+            (None, 0.0)
         };
-        let shows = near && surface.relief_strength > 0.0;
-        let normal_map = self.optional(shows.then_some(relief), library, list)?;
         let made = abi::Material {
-            base_color: surface.base_color,
+            base_color,
             albedo_map,
             normal_map,
             normal_strength,
@@ -98,6 +129,26 @@ impl Surfaces {
             ..abi::Material::default()
         };
         Ok(push(list, made))
+    }
+
+    /// The normal map of cloth or hair, and its strength.
+    fn relief(
+        &mut self,
+        surface: &Surface,
+        library: &Library,
+        list: &mut DrawList,
+    ) -> Result<(Option<u32>, f32), DrawError> {
+        let of = match surface.relief {
+            Relief::Cloth => surface.texture.as_deref(),
+            Relief::Detail => detail_texture(surface.detail).0,
+        };
+        let own = of.and_then(|id| library.textures.normal_map(id));
+        let (id, strength) = match (&own, surface.relief) {
+            (Some(id), Relief::Cloth) => (Some(id.as_str()), WEAVE_STRENGTH),
+            (None, Relief::Cloth) => (Some(FOLDS), surface.relief_strength),
+            (own, Relief::Detail) => (own.as_deref(), surface.relief_strength),
+        };
+        Ok((self.optional(id, library, list)?, strength))
     }
 
     fn optional(
@@ -145,10 +196,11 @@ impl Surfaces {
 /// repeats; skin and hair have none.
 const fn detail_texture(detail: Detail) -> (Option<&'static str>, [f32; 2]) {
     match detail {
-        Detail::None => (None, [1.0; 2]),
+        Detail::None | Detail::Age => (None, [1.0; 2]),
         Detail::Skin => (Some("detail/skin"), [8.0; 2]),
         Detail::Cloth => (Some("detail/cloth"), [1.0; 2]),
         Detail::Hair => (Some("detail/hair"), [4.0; 2]),
+        Detail::Curls => (Some("detail/curls"), [4.0; 2]),
     }
 }
 

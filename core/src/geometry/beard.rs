@@ -124,6 +124,7 @@ fn add_locks(builder: &mut Builder, head: &Head, shell: &Surface<'_>, field: &[f
                 tilt: dice.range(-0.4, 0.4),
                 round: 0.5,
                 u: dice.unit() * 4.0,
+                tuft: false,
             };
             ribbon.add(&mut builder.mesh, &path, &|_| skin);
         }

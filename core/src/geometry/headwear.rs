@@ -48,6 +48,8 @@ struct Hat<'a> {
 }
 
 /// Repeats of the cloth's texture over a metre.
+/// How far a scarf reaches from the middle of the head, metres.
+const SCARF_M: f32 = 0.205;
 const UV_PER_M: f32 = 4.0;
 
 impl Hat<'_> {
@@ -258,26 +260,46 @@ impl Hat<'_> {
             }
         }
         let seed = self.head.seed;
+        // As far out as cloth reaches the body goes on: there the scarf ends, and its hem lies on
+        // what is under it.
+        let ends: Vec<bool> = reach.iter().map(|r| *r >= 0.999 * SCARF_M * self.s).collect();
         let points: Vec<Vec3> = directions
             .iter()
             .zip(&reach)
-            .map(|(d, r)| {
+            .zip(&ends)
+            .map(|((d, r), ends)| {
                 let low = step(0.2, -0.6, d.y);
                 let fold = lump(Vec3::new(d.x * 9.0, d.y * 3.0, d.z * 5.0), seed);
-                center + *d * (r + self.s * (0.0015 + 0.0045 * low) * fold)
+                let p = center + *d * (r + self.s * (0.0015 + 0.0045 * low) * fold);
+                if *ends { self.laid(p) } else { p }
             })
             .collect();
         let uvs: Vec<[f32; 2]> = (0..points.len())
             .map(|i| [(i % wide) as f32 / across as f32 * 3.0, (i / wide) as f32 / rows as f32])
             .collect();
+        let first = mesh.positions.len() as u32;
+        let start = mesh.triangles.len();
         add_grid(mesh, &points, &uvs, wide, true, &|p| self.head.hanging(p));
+        let all = mesh.triangles.split_off(start);
+        let seen = |t: &[u32; 3]| t.iter().any(|v| !ends[(v - first) as usize]);
+        mesh.triangles.extend(all.into_iter().filter(seen));
+    }
+
+    /// A point as far out of the body as cloth that lies on it.
+    fn laid(&self, p: Vec3) -> Vec3 {
+        let mut p = p;
+        for _ in 0..2 {
+            if let Some((d, n)) = self.head.near.surface(p) {
+                p += n * (self.s * 0.008 - d).max(0.0);
+            }
+        }
+        p
     }
 
     /// How far from the middle of the head a scarf lies in a direction.
     fn reach(&self, center: Vec3, direction: Vec3) -> f32 {
-        const FAR_M: f32 = 0.205;
         let clear = self.s * 0.009;
-        let mut r = FAR_M * self.s;
+        let mut r = SCARF_M * self.s;
         for _ in 0..40 {
             match self.head.near.surface(center + direction * r) {
                 Some((d, _)) if d < clear + 0.0005 => break,

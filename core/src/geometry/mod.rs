@@ -12,7 +12,7 @@
 //! | [`surface`] | what the parts of a person look like |
 //! | `garment`, `cut` | clothes, cut from a shell along scalar fields |
 //! | `clothes`, `layers`, `drape`, `skirt` | how garments hang, one over the other |
-//! | `hair`, `beard`, `headwear`, `glasses` | what grows and sits on the head |
+//! | `hair`, `beard`, `lashes`, `headwear`, `glasses` | what grows and sits on the head |
 //! | [`skeleton`], [`pose`] | joints, and clips and poses retargeted to a body |
 //! | [`sway`] | joints of cloth that hangs round both legs |
 //! | [`stance`], `hand` | what joints and fingers are to do |
@@ -30,6 +30,7 @@ mod glasses;
 mod hair;
 mod hand;
 mod headwear;
+mod lashes;
 mod layers;
 pub mod person;
 pub mod phenotype;

@@ -13,7 +13,7 @@ use glam::Vec3;
 use super::body::RestBody;
 use super::cut::{Builder, Surface as Cloth, smooth_normals};
 use super::garment::{self, Cuts};
-use super::{beard, clothes, glasses, hair, headwear, phenotype};
+use super::{beard, clothes, glasses, hair, headwear, lashes, phenotype};
 use crate::base::hash::Hasher;
 use crate::library::figure::{Figure, GroupId, LOD_COUNT};
 use crate::library::mesh::{Mesh, SkinVertex};
@@ -22,12 +22,16 @@ use crate::scene::{BeardStyle, Body, Glasses, HairStyle, HeadwearKind, Look, Out
 /// What a part of a person is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum PartKind {
-    /// Bare skin.
+    /// Skin of the head.
+    Head,
+    /// Bare skin elsewhere.
     Skin,
     /// Eyeballs.
     Eyes,
     /// Teeth.
     Teeth,
+    /// Lashes.
+    Lashes,
     /// What lies under the locks of the hair, and hair without locks.
     Hair,
     /// Locks.
@@ -94,9 +98,14 @@ impl<'a> Evaluated<'a> {
             .map(Vec3::from_array)
             .collect();
         let normals = smooth_normals(&positions, &group.render, &level.triangles);
+        let uvs = match id {
+            GroupId::Skin => figure.skin_uvs(),
+            GroupId::Shell => figure.shell_uvs(),
+            _ => &group.uvs,
+        };
         Self {
             render: &group.render[..level.render as usize],
-            uvs: &group.uvs[..2 * level.render as usize],
+            uvs: &uvs[..2 * level.render as usize],
             triangles: &level.triangles,
             positions,
             normals,
@@ -104,7 +113,7 @@ impl<'a> Evaluated<'a> {
         }
     }
 
-    fn surface(&self) -> Cloth<'_> {
+    pub fn surface(&self) -> Cloth<'_> {
         self.with(&self.positions, &self.normals)
     }
 
@@ -183,7 +192,7 @@ pub fn dress(figure: &Figure, person: &Person, rest: &RestBody, lod: usize) -> D
     let cuts = Cuts::new(&person.outfit);
     let mut out = Parts { builder: Builder::default(), parts: Vec::new() };
     let skin = add_skin(&mut out, figure, rest, &cuts, lod);
-    add_face(&mut out, figure, person, rest, lod);
+    add_face(&mut out, figure, person, (rest, &skin), lod);
     add_head(&mut out, figure, person, (rest, &skin), lod);
     clothes::add(&mut out, figure, rest, &cuts, lod);
     let mut mesh = out.builder.mesh;
@@ -205,15 +214,32 @@ fn add_skin<'a>(
     let places = garment::places(figure, GroupId::Skin, count);
     let hidden = garment::hidden(figure, cuts, &places, lod);
     garment::tuck(figure, cuts, &places, lod, &mut skin.positions, &skin.normals);
-    let range = out.builder.add_where(&skin.surface(), |t| !t.iter().all(|&v| hidden[v]));
-    out.add(PartKind::Skin, range, false);
+    let on_head = figure.on_head();
+    for (kind, wanted) in [(PartKind::Head, true), (PartKind::Skin, false)] {
+        let keep = |r: u16| on_head[usize::from(r)] == wanted;
+        let triangles: Vec<u16> =
+            skin.triangles.chunks_exact(3).filter(|t| keep(t[0])).flatten().copied().collect();
+        let part = Cloth { triangles: &triangles, ..skin.surface() };
+        let range = out.builder.add_where(&part, |t| !t.iter().all(|&v| hidden[v]));
+        out.add(kind, range, false);
+    }
     skin
 }
 
-fn add_face(out: &mut Parts, figure: &Figure, person: &Person, rest: &RestBody, lod: usize) {
+fn add_face(
+    out: &mut Parts,
+    figure: &Figure,
+    person: &Person,
+    (rest, skin): (&RestBody, &Evaluated<'_>),
+    lod: usize,
+) {
     let eyes = Evaluated::new(figure, rest, GroupId::Eyes, lod);
     let range = out.builder.add_where(&eyes.surface(), |_| true);
     out.add(PartKind::Eyes, range, false);
+    if lod == 0 {
+        let range = lashes::add(&mut out.builder.mesh, figure, &skin.surface(), &eyes.positions);
+        out.add(PartKind::Lashes, range, true);
+    }
     if opens_mouth(&person.look) {
         let teeth = Evaluated::new(figure, rest, GroupId::Teeth, lod);
         let range = out.builder.add_where(&teeth.surface(), |_| true);
@@ -380,6 +406,8 @@ mod tests {
                 },
                 glasses: Glasses::ALL[i / 2 % Glasses::ALL.len()],
                 iris_color: [0.1, 0.05, 0.02],
+                freckles: 0.0,
+                flush: 0.5,
                 face,
             },
             outfit: outfit(i, x),
@@ -440,7 +468,9 @@ mod tests {
             );
         }
         for d in &all[..4] {
-            for kind in [PartKind::Skin, PartKind::Eyes, PartKind::Top, PartKind::Bottom] {
+            for kind in
+                [PartKind::Head, PartKind::Skin, PartKind::Eyes, PartKind::Top, PartKind::Bottom]
+            {
                 assert!(d.parts.iter().any(|p| p.kind == kind), "{kind:?}");
             }
         }

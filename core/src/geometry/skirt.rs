@@ -12,7 +12,7 @@ use super::drape::Tube;
 use super::layers::Shell;
 use super::skeleton::{Limb, Side};
 use super::sway::{self, CLOTH_JOINT_COUNT};
-use crate::library::figure::GroupId;
+use crate::library::figure::{CLOTH_REPEAT, GroupId, SKIRT};
 use crate::library::mesh::SkinVertex;
 
 /// Rows and columns by level of detail.
@@ -81,7 +81,8 @@ impl Skirt {
                 let v = row * columns + k % columns;
                 self.render.push(v as u16);
                 let u = 4.0 * k as f32 / columns as f32;
-                self.uvs.extend([u, (first - self.positions[v].y) / REPEAT_M]);
+                let down = (first - self.positions[v].y) / REPEAT_M;
+                self.uvs.extend([(SKIRT[0] + u) / CLOTH_REPEAT, (SKIRT[1] + down) / CLOTH_REPEAT]);
             }
         }
         let wide = columns + 1;

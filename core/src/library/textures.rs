@@ -4,7 +4,7 @@
 //! |---|---|
 //! | `procedural/<family>/<nn>` | sRGB, tiles: for walls, floors and objects |
 //! | `cloth/<family>/<nn>` | sRGB, tiles, light: multiplied by a garment's colour |
-//! | `detail/<skin, hair, cloth, folds>` | plain numbers round 0.5, tiles |
+//! | `detail/<skin, hair, curls, cloth, folds>` | plain numbers round 0.5, tiles |
 //! | `normal/<...>` | plain numbers, normals of the computed texture of that name |
 //! | `folder/<folder>/<file>` | sRGB, a user's JPEG or PNG by its path below the folder |
 //!
@@ -294,14 +294,14 @@ mod tests {
         let one = library(&[]).unwrap().get("detail/skin").unwrap().size_bytes();
         let library = library(&[]).unwrap().with_memory_limit(2 * one);
         let skin = library.get("detail/skin").unwrap();
-        let hair = library.get("detail/hair").unwrap();
+        let plain = library.get("cloth/plain/00").unwrap();
         assert!(Arc::ptr_eq(&skin, &library.get("detail/skin").unwrap()));
         library.get("detail/cloth").unwrap();
         assert_eq!(library.memory_bytes(), 2 * one);
         assert!(Arc::ptr_eq(&skin, &library.get("detail/skin").unwrap()));
-        let again = library.get("detail/hair").unwrap();
-        assert!(!Arc::ptr_eq(&hair, &again), "it was dropped");
-        assert_eq!(hair, again, "and is the same again");
+        let again = library.get("cloth/plain/00").unwrap();
+        assert!(!Arc::ptr_eq(&plain, &again), "it was dropped");
+        assert_eq!(plain, again, "and is the same again");
     }
 
     #[test]

@@ -50,6 +50,8 @@ fn member_look(look: &Look, catalogue: &Catalogue) -> MemberLook {
         headwear: Headwear { kind: headwear, color: headwear_color },
         glasses,
         iris_color,
+        freckles,
+        flush,
         face,
     } = look;
     let color = |rgb: &[f64; 3]| Some(FixedColor::from_linear(*rgb));
@@ -64,6 +66,8 @@ fn member_look(look: &Look, catalogue: &Catalogue) -> MemberLook {
         headwear_color: color(headwear_color),
         glasses: Some(*glasses),
         iris_color: color(iris_color),
+        freckles: Some(*freckles),
+        flush: Some(*flush),
         face: Some(face),
         expression: Some(expression),
     }

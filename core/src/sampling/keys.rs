@@ -81,6 +81,8 @@ keys! {
     HEADWEAR_COLOR = "people.look.headwear_color",
     GLASSES = "people.look.glasses",
     IRIS = "people.look.iris",
+    FRECKLES = "people.look.freckles",
+    FLUSH = "people.look.flush",
     FACE_COUNT = "people.look.face_targets",
     FACE_ORDER = "people.look.face_order",
     FACE_AMOUNT = "people.look.face_amount",

@@ -159,12 +159,14 @@ pub(super) fn look(
     };
     let greying = of(keys::GREYING);
     let dyed = traits.age_years >= DYED_FROM_YEARS && flag(&look.dyed, of(keys::DYED));
+    let skin_color = given(known.skin, &look.skin, keys::SKIN, &|draw| skin(traits, draw));
+    let hair_color = given(known.hair_color, &look.hair_color, keys::HAIR_COLOR, &|draw| {
+        if dyed { dye(of(keys::DYE)) } else { hair_color(traits, draw, greying) }
+    });
     Look {
-        skin_color: given(known.skin, &look.skin, keys::SKIN, &|draw| skin(traits, draw)),
+        skin_color,
         hair: chosen(known.hair, &look.hair, of(keys::HAIR), &|draw| style::hair(traits, draw)),
-        hair_color: given(known.hair_color, &look.hair_color, keys::HAIR_COLOR, &|draw| {
-            if dyed { dye(of(keys::DYE)) } else { hair_color(traits, draw, greying) }
-        }),
+        hair_color,
         beard: chosen(known.beard, &look.beard, of(keys::BEARD), &|draw| {
             style::beard(traits, draw)
         }),
@@ -185,6 +187,10 @@ pub(super) fn look(
         iris_color: given(known.iris_color, &look.iris_color, keys::IRIS, &|draw| {
             iris(traits, draw)
         }),
+        freckles: known.freckles.unwrap_or_else(|| {
+            freckles(skin_color, hair_color, traits.age_years, of(keys::FRECKLES))
+        }),
+        flush: known.flush.unwrap_or_else(|| flush(traits.age_years, of(keys::FLUSH))),
         face: face(look, known, faces, source),
     }
 }
@@ -241,6 +247,31 @@ fn hair_color(traits: PersonTraits, draw: Draw, greying: Draw) -> [f64; 3] {
 fn iris(traits: PersonTraits, draw: Draw) -> [f64; 3] {
     let colors: &[_] = if european(traits, draw) { &IRIS_EUROPEAN } else { &IRIS_OTHERS };
     linear(pick(colors, draw))
+}
+
+/// Freckles of light skin: most often with red hair, with which they share a gene (Bastiaens and
+/// others, "The melanocortin-1-receptor gene is the major freckle gene", Human Molecular Genetics
+/// 10, 2001), rarely with dark hair, and none before school age. The shares are estimates.
+fn freckles(skin: [f64; 3], hair: [f64; 3], age_years: f64, draw: Draw) -> f64 {
+    let light = ((skin[1] - 0.25) / 0.2).clamp(0.0, 1.0);
+    // Red hair is much redder than green, and not dark; fair hair is light.
+    let red = ((hair[0] / hair[1].max(1e-3) - 3.0) / 2.0).clamp(0.0, 1.0)
+        * (hair[0] / 0.08).clamp(0.0, 1.0);
+    let fair = (hair[1] / 0.1).clamp(0.0, 1.0) * (1.0 - red);
+    let young = ((age_years - 4.0) / 4.0).clamp(0.0, 1.0)
+        * (1.0 - (age_years - 40.0) / 60.0).clamp(0.3, 1.0);
+    let chance = light * young * (0.07 + 0.60 * red + 0.13 * fair);
+    let u = draw.uniform();
+    // The rarer half of them has many.
+    if u < chance { 0.25 + 0.75 * (1.0 - u / chance) } else { 0.0 }
+}
+
+/// How strongly blood shows through; more so in children and old people.
+fn flush(age_years: f64, draw: Draw) -> f64 {
+    let more = 0.15 * ((18.0 - age_years) / 10.0).clamp(0.0, 1.0)
+        + 0.15 * ((age_years - 50.0) / 25.0).clamp(0.0, 1.0);
+    let spread = 0.22 * quantile::normal(draw.uniform()).clamp(-2.0, 2.0);
+    (0.42 + more + spread).clamp(0.0, 1.0)
 }
 
 /// A strong colour that no hair has by itself.
@@ -355,6 +386,20 @@ mod tests {
         let natural = mean(draws().map(|d| strength(hair_color(anyone, d, d.lane(9)))));
         assert!(natural < 0.05, "{natural}");
         assert!(draws().all(|d| strength(dye(d)) > 4.0 * natural));
+    }
+
+    #[test]
+    fn freckles_come_with_light_skin_and_red_hair() {
+        let share = |skin: [f64; 3], hair: [f64; 3], age| {
+            mean(draws().map(|d| f64::from(u8::from(freckles(skin, hair, age, d) > 0.0))))
+        };
+        let (light, dark) = (linear(SKIN_SRGB[0]), linear(SKIN_SRGB[5]));
+        let [black, _, brown, fair, red] = HAIR_EUROPEAN.map(|h| linear(h.0));
+        assert!(share(light, red, 25.0) > 0.5);
+        assert!((0.1..0.3).contains(&share(light, fair, 25.0)));
+        assert!(share(light, brown, 25.0) < 0.2 && share(light, black, 25.0) < 0.1);
+        assert_eq!(share(dark, red, 25.0), 0.0);
+        assert_eq!(share(light, red, 3.0), 0.0);
     }
 
     #[test]

@@ -269,6 +269,12 @@ pub struct Look {
     pub glasses: Glasses,
     /// Iris.
     pub iris_color: [f64; 3],
+    /// Freckles: 0 none .. 1 all over the face.
+    #[serde(default)]
+    pub freckles: f64,
+    /// How strongly blood shows through at cheeks, nose and ears: 0 not at all .. 1 most.
+    #[serde(default)]
+    pub flush: f64,
     /// Local face targets by their name in the figure library, with their amount (0..1).
     pub face: Vec<(String, f64)>,
 }

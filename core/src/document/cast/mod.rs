@@ -139,6 +139,10 @@ values! {
         glasses: Glasses,
         /// Iris.
         iris_color: FixedColor,
+        /// Freckles: 0 none .. 1 all over the face.
+        freckles: f64,
+        /// How strongly blood shows through at cheeks, nose and ears, 0..1.
+        flush: f64,
         /// All shapes that make the face somebody's own, by their names, with their amounts, 0..1.
         face: BTreeMap<String, f64>,
         /// All units of expression and gaze, by their names, with their amounts, 0..1.

@@ -140,6 +140,7 @@ fn look(c: &mut Check, path: &str, look: &MemberLook) {
             }
         };
     }
+    numbers(c, path, &[("freckles", look.freckles, SHARE), ("flush", look.flush, SHARE)]);
     for (name, amounts) in [("face", &look.face), ("expression", &look.expression)] {
         for (target, amount) in amounts.iter().flatten() {
             c.number(&format!("{path}.{name}.{target}"), *amount, SHARE);

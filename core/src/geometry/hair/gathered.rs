@@ -124,6 +124,7 @@ fn ponytail_locks(grower: &Grower<'_>, mesh: &mut Mesh, tone: usize) {
             tilt: dice.range(-0.4, 0.4),
             round: 0.55,
             u: dice.unit() * 4.0,
+            tuft: false,
         };
         ribbon.add(mesh, &piece.resampled(points), &|p| grower.head.hanging(p));
     }
@@ -169,6 +170,7 @@ fn bun_locks(grower: &Grower<'_>, mesh: &mut Mesh, tone: usize) {
             tilt: dice.range(-0.25, 0.25),
             round: 0.6,
             u: dice.unit() * 4.0,
+            tuft: false,
         };
         ribbon.add(mesh, &path, &|_| grower.head.on_head());
     }
@@ -232,8 +234,14 @@ fn braid(grower: &Grower<'_>, mesh: &mut Mesh, side: f32, sides: usize) {
             points: (0..4).map(|k| middle.points[end] + lift + tip * turn(k, 4)).collect(),
             outward: vec![middle.outward[end]; 4],
         };
-        let ribbon =
-            Ribbon { width_m: 0.009 * s, root: 0.7, tilt: 0.0, round: 0.5, u: dice.unit() * 4.0 };
+        let ribbon = Ribbon {
+            width_m: 0.009 * s,
+            root: 0.7,
+            tilt: 0.0,
+            round: 0.5,
+            u: dice.unit() * 4.0,
+            tuft: false,
+        };
         ribbon.add(mesh, &path, &hanging);
     }
 }

@@ -190,7 +190,7 @@ impl Grower<'_> {
         }
         if self.style == HairStyle::Balding {
             let here = style::wreath(root.local);
-            thick = thick * here - 0.0015 * (1.0 - here);
+            thick = thick * here * here - 0.0012 * (1.0 - here);
         }
         if let Some(edge) = self.head.brim_y(root.local) {
             // Pressed flat under a hat, and bulging less just below it.
@@ -282,7 +282,9 @@ impl Grower<'_> {
             + s * locks.layer_m * higher;
         let pressed = self.head.brim_y(root.local).is_some();
         let end_m = if pressed { end_m.min(0.012 * s) } else { end_m };
-        let start = (cap - 0.002 * s).max(0.0);
+        // Long locks come out at once, or the cap would show bare along the hairline.
+        let sunk = if matches!(locks.length, Length::Between(..)) { 0.002 } else { 0.0 };
+        let start = (cap - sunk * s).max(0.0);
         match locks.length {
             Length::Between(low, high) => {
                 // Cut shorter at the nape.
@@ -297,12 +299,12 @@ impl Grower<'_> {
             }
             Length::Down(y, spread) => {
                 let y = y + spread * dice.range(-1.0, 1.0);
-                let clear = |way: f32| start + (end_m - start) * step(0.0, 0.08 * s, way);
+                let clear = |way: f32| start + (end_m - start) * step(0.0, 0.028 * s, way);
                 comb.line(root, (start, 0.018 * s), |_, l| l.y < y, clear)
             }
             Length::ToTie => {
                 let near = |l: Vec3| (l - tie).length() < 0.016;
-                let clear = |way: f32| start + (end_m - start) * step(0.0, 0.05 * s, way);
+                let clear = |way: f32| start + (end_m - start) * step(0.0, 0.022 * s, way);
                 comb.line(root, (start, 0.012 * s), |_, l| near(l), clear)
             }
         }
@@ -331,12 +333,15 @@ impl Grower<'_> {
                 let phase = 3.0 * root.column / COLUMNS as f32 + apart * dice.unit();
                 path.curl(radius, turn * s * (1.0 + apart * dice.range(-0.2, 0.25)), phase);
             }
+            // Hair that is drawn tight lies flat from its roots on.
+            let (at_root, tilt) = if locks.clings > 0.9 { (0.25, 0.12) } else { (0.6, 0.35) };
             let ribbon = Ribbon {
                 width_m: locks.width_m * s * wide * dice.range(0.65, 1.35),
-                root: 0.6,
-                tilt: dice.range(-0.35, 0.35),
+                root: at_root,
+                tilt: dice.range(-tilt, tilt),
                 round: 0.55,
                 u: dice.unit() * 4.0,
+                tuft: locks.tuft,
             };
             ribbon.add(mesh, &path, &skin);
         }
@@ -349,9 +354,9 @@ impl Grower<'_> {
             return 0.0;
         }
         match self.style {
-            HairStyle::Balding => step(0.5, 0.9, style::wreath(root.local)),
+            HairStyle::Balding => step(0.25, 0.8, style::wreath(root.local)),
             // So short that ends beyond the border would be specks.
-            HairStyle::Cropped => step(0.003, 0.009, root.depth),
+            HairStyle::Cropped | HairStyle::CrewCut => step(0.003, 0.009, root.depth),
             // Ends at the hairline frame the face.
             HairStyle::Short
             | HairStyle::Pixie

@@ -189,6 +189,8 @@ pub(in crate::geometry) struct Ribbon {
     pub round: f32,
     /// Where it begins in the texture across.
     pub u: f32,
+    /// It ends in three points instead of one, as a tuft does.
+    pub tuft: bool,
 }
 
 impl Ribbon {
@@ -214,6 +216,12 @@ impl Ribbon {
             let (side, up) = (flat * cos + up * sin, up * cos - flat * sin);
             let uv = |x: f32| [self.u + x * UV_PER_M[0], way * UV_PER_M[1]];
             let joints = skin(p);
+            if i == last && self.tuft {
+                let half = self.half((last - 1) as f32 / last as f32);
+                let back = p - path.points[last - 1];
+                self.add_tips(mesh, before, (p, back, side * half), up);
+                return;
+            }
             if i == last {
                 let tip = push(mesh, p, up, uv(0.0), joints);
                 mesh.triangles.push([before[0], before[1], tip]);
@@ -229,6 +237,32 @@ impl Ribbon {
                 mesh.triangles.push([before[0], pair[1], pair[0]]);
             }
             before = pair;
+        }
+    }
+
+    /// Three points of unequal length side by side, from the ribbon's last two vertices on: `end` of
+    /// its line, the way there from those vertices, and half the width.
+    fn add_tips(
+        &self,
+        mesh: &mut Mesh,
+        [left, right]: [u32; 2],
+        (end, way, half): (Vec3, Vec3, Vec3),
+        up: Vec3,
+    ) {
+        let at = |mesh: &Mesh, v: u32| Vec3::from_array(mesh.positions[v as usize]);
+        let (a, b) = (at(mesh, left), at(mesh, right));
+        let (uv, joints) = (mesh.uvs[left as usize], mesh.skin[left as usize]);
+        let [c, d] = [1.0 / 3.0, 2.0 / 3.0]
+            .map(|t| push(mesh, a.lerp(b, t), up, [uv[0] + t * 0.04, uv[1]], joints));
+        // Which of them is the longest follows from where the ribbon lies in the texture.
+        let longest = (self.u * 7.0) as usize;
+        let roots = [[left, c], [c, d], [d, right]];
+        for (k, root) in roots.into_iter().enumerate() {
+            let short = [0.0, 0.30, 0.16][(k + longest) % 3];
+            let tip = end + half * (0.9 * (k as f32 - 1.0)) - way * short;
+            let along = uv[1] + way.length() * (1.0 - short) * UV_PER_M[1];
+            let tip = push(mesh, tip, up, [uv[0] + k as f32 * 0.02, along], joints);
+            mesh.triangles.push([root[0], root[1], tip]);
         }
     }
 }

@@ -55,6 +55,8 @@ pub(super) struct Locks {
     pub curl: Option<(f32, f32)>,
     /// Points of the finest ribbons.
     pub points: usize,
+    /// They end in several points.
+    pub tuft: bool,
     /// Which way they lie.
     pub flow: Flow,
 }
@@ -111,7 +113,8 @@ const LOOSE: Locks = Locks {
     yields: 0.6,
     clings: 0.6,
     curl: None,
-    points: 5,
+    points: 4,
+    tuft: true,
     flow: Flow::Whorl,
 };
 
@@ -126,23 +129,25 @@ pub(super) fn form(style: HairStyle) -> Option<Form> {
             locks: Some(Locks {
                 count: 900,
                 length: Length::Between(0.005, 0.009),
-                width_m: 0.0040,
+                width_m: 0.0020,
                 clear_m: (0.002, 0.0045),
                 layer_m: 0.0,
                 clings: 0.2,
                 points: 3,
+                tuft: false,
                 ..LOOSE
             }),
             ..none
         },
         HairStyle::Balding => Form {
-            cap: Cap { thick_m: 0.007, taper_m: 0.020, side: 1.0, ..close },
+            cap: Cap { thick_m: 0.0042, taper_m: 0.020, side: 1.0, ..close },
             locks: Some(Locks {
                 count: 260,
-                length: Length::Between(0.018, 0.032),
-                width_m: 0.009,
-                clear_m: (0.002, 0.007),
-                layer_m: 0.003,
+                length: Length::Between(0.012, 0.022),
+                width_m: 0.0075,
+                clear_m: (0.001, 0.004),
+                layer_m: 0.002,
+                clings: 0.9,
                 ..LOOSE
             }),
             ..none
@@ -157,12 +162,13 @@ pub(super) fn form(style: HairStyle) -> Option<Form> {
             },
             locks: Some(Locks {
                 count: 1000,
-                length: Length::Between(0.010, 0.017),
-                width_m: 0.0052,
+                length: Length::Between(0.009, 0.015),
+                width_m: 0.0032,
                 clear_m: (0.002, 0.011),
                 layer_m: 0.007,
                 clings: 0.0,
-                points: 4,
+                points: 3,
+                tuft: false,
                 flow: Flow::Brush,
                 ..LOOSE
             }),
@@ -182,9 +188,11 @@ pub(super) fn form(style: HairStyle) -> Option<Form> {
                 ragged: 0.8,
             },
             locks: Some(Locks {
+                count: 540,
                 length: Length::Between(0.04, 0.075),
                 clear_m: (0.003, 0.009),
                 layer_m: 0.012,
+                points: 5,
                 flow: Flow::Parting,
                 ..LOOSE
             }),
@@ -193,9 +201,11 @@ pub(super) fn form(style: HairStyle) -> Option<Form> {
         HairStyle::Pixie => Form {
             cap: Cap { thick_m: 0.015, taper_m: 0.045, side: 0.6, lump: (0.15, 0.03), ragged: 0.8 },
             locks: Some(Locks {
+                count: 540,
                 length: Length::Between(0.030, 0.056),
                 clear_m: (0.003, 0.008),
                 layer_m: 0.012,
+                points: 5,
                 flow: Flow::Fringe,
                 ..LOOSE
             }),
@@ -211,14 +221,15 @@ pub(super) fn form(style: HairStyle) -> Option<Form> {
             },
             locks: Some(Locks {
                 count: 1300,
-                length: Length::Between(0.008, 0.015),
-                width_m: 0.010,
+                length: Length::Between(0.006, 0.012),
+                width_m: 0.0062,
                 clear_m: (0.0, 0.0),
                 layer_m: 0.0,
                 yields: 0.6,
                 clings: 0.0,
-                curl: Some((0.004, 0.016)),
-                points: 5,
+                curl: None,
+                points: 3,
+                tuft: true,
                 flow: Flow::Burst,
             }),
             ..none
@@ -228,13 +239,14 @@ pub(super) fn form(style: HairStyle) -> Option<Form> {
             locks: Some(Locks {
                 count: 330,
                 length: Length::Down(0.655, 0.035),
-                width_m: 0.014,
-                clear_m: (0.010, 0.038),
+                width_m: 0.0120,
+                clear_m: (0.010, 0.030),
                 layer_m: 0.012,
                 yields: 0.5,
                 clings: 0.1,
                 curl: Some((0.0095, 0.048)),
                 points: 24,
+                tuft: false,
                 flow: Flow::Fall,
             }),
             sheet_y: Some(0.69),
@@ -243,13 +255,13 @@ pub(super) fn form(style: HairStyle) -> Option<Form> {
         HairStyle::Bob => Form {
             cap: Cap { thick_m: 0.018, taper_m: 0.040, side: 0.8, lump: (0.06, 0.03), ragged: 0.5 },
             locks: Some(Locks {
-                count: 330,
+                count: 440,
                 length: Length::Down(0.655, 0.012),
-                width_m: 0.018,
-                clear_m: (0.010, 0.018),
+                width_m: 0.0125,
+                clear_m: (0.009, 0.018),
                 layer_m: 0.008,
                 clings: 0.35,
-                points: 11,
+                points: 8,
                 flow: Flow::Fall,
                 ..LOOSE
             }),
@@ -261,14 +273,15 @@ pub(super) fn form(style: HairStyle) -> Option<Form> {
             Form {
                 cap: Cap { thick_m: 0.015, taper_m: 0.040, ..SMOOTH },
                 locks: Some(Locks {
-                    count: 300,
+                    count: if wavy { 370 } else { 480 },
                     length: Length::Down(0.46, 0.05),
-                    width_m: if wavy { 0.022 } else { 0.020 },
+                    width_m: if wavy { 0.015 } else { 0.0125 },
                     clear_m: (0.010, 0.020),
                     layer_m: 0.006,
                     clings: 0.3,
                     curl: wavy.then_some((0.007, 0.085)),
-                    points: if wavy { 18 } else { 13 },
+                    points: if wavy { 15 } else { 9 },
+                    tuft: false,
                     flow: Flow::Fall,
                     ..LOOSE
                 }),
@@ -279,14 +292,15 @@ pub(super) fn form(style: HairStyle) -> Option<Form> {
         HairStyle::Ponytail | HairStyle::Bun => Form {
             cap: Cap { thick_m: 0.007, taper_m: 0.030, ..SMOOTH },
             locks: Some(Locks {
-                count: 260,
+                count: 270,
                 length: Length::ToTie,
-                width_m: 0.014,
+                width_m: 0.0115,
                 clear_m: (0.008, 0.011),
                 layer_m: 0.0,
                 yields: 0.8,
                 clings: 1.0,
                 points: 9,
+                tuft: false,
                 flow: Flow::Back,
                 ..LOOSE
             }),
@@ -296,14 +310,15 @@ pub(super) fn form(style: HairStyle) -> Option<Form> {
         HairStyle::Braids => Form {
             cap: Cap { thick_m: 0.007, taper_m: 0.030, ..SMOOTH },
             locks: Some(Locks {
-                count: 260,
+                count: 270,
                 length: Length::ToTie,
-                width_m: 0.014,
+                width_m: 0.0115,
                 clear_m: (0.008, 0.011),
                 layer_m: 0.0,
                 yields: 0.8,
                 clings: 1.0,
                 points: 9,
+                tuft: false,
                 flow: Flow::Sides,
                 ..LOOSE
             }),

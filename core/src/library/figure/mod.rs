@@ -7,14 +7,20 @@ use std::io::Read;
 use std::ops::Range;
 use std::sync::{Arc, LazyLock, OnceLock};
 
+mod complexion;
 pub mod data;
 mod eye;
+mod maps;
 pub mod predict;
+mod seams;
 mod stream;
 mod whiskers;
 
+pub use complexion::upper_lid_y;
 pub use data::{FigureData, Group, GroupId, LOD_COUNT, Lod};
 use data::{KEYPOINT_VERTICES, MAX_FACTORS};
+pub use maps::{CLOTH_REPEAT, Freckles, NEUTRAL_TINT, SKIRT};
+pub use seams::Sewn;
 pub use whiskers::{ScalpShade, Whiskers, beard, wreath};
 
 use glam::DVec3;
@@ -57,11 +63,26 @@ pub enum FigureError {
 pub struct Figure {
     data: FigureData,
     skin: Vec<SkinVertex>,
-    skin_mask: Arc<Texture>,
-    /// Skin masks with other scalps and beards, made when first asked for.
-    painted: [OnceLock<Arc<Texture>>; 3 * Whiskers::ALL.len()],
+    /// Texture coordinates of the skin's render vertices, the head's in a layout of its own.
+    skin_uvs: Vec<f32>,
+    /// Which of the skin's render vertices are the head's.
+    on_head: Vec<bool>,
+    /// Texture coordinates of the garment shell's render vertices.
+    shell_uvs: Vec<f32>,
+    painted: Painted,
     eye_mask: Arc<Texture>,
     reach_margin_m: [f64; JOINT_COUNT],
+}
+
+/// Maps of the skin, painted when first asked for.
+#[derive(Debug, Default)]
+struct Painted {
+    /// By scalp and beard.
+    head_masks: [OnceLock<Arc<Texture>>; 3 * Whiskers::ALL.len()],
+    body_mask: OnceLock<Arc<Texture>>,
+    head_tints: [OnceLock<Arc<Texture>>; Freckles::ALL.len()],
+    head_age: OnceLock<[Arc<Texture>; 2]>,
+    sewn: [OnceLock<Arc<Texture>>; Sewn::ALL.len()],
 }
 
 /// A macro target's row: the target and the keywords whose weights multiply.
@@ -126,10 +147,12 @@ impl Figure {
                 weights: [w[0], w[1], w[2], w[3]],
             })
             .collect();
-        let skin_mask = Arc::new(mask_texture(&data.mask));
         let reach_margin_m = reach_margins_m(&data, &skin);
         let eye_mask = Arc::new(eye::mask());
-        Ok(Self { data, skin, skin_mask, painted: Default::default(), eye_mask, reach_margin_m })
+        let (skin_uvs, on_head) = maps::layout(&data);
+        let shell_uvs = maps::shell_layout(&data);
+        let painted = Painted::default();
+        Ok(Self { data, skin, skin_uvs, on_head, shell_uvs, painted, eye_mask, reach_margin_m })
     }
 
     /// The raw tables.
@@ -268,20 +291,66 @@ impl Figure {
         &self.reach_margin_m
     }
 
-    /// Masks over the skin: red lips and mouth, green brows, blue flushed places, alpha scalp.
+    /// Texture coordinates of the skin's render vertices, u then v, v down: those of the head
+    /// cover its own maps, the others the body's.
     #[must_use]
-    pub const fn skin_mask(&self) -> &Arc<Texture> {
-        &self.skin_mask
+    pub fn skin_uvs(&self) -> &[f32] {
+        &self.skin_uvs
     }
 
-    /// The same with another scalp and the shade of a beard in alpha; made once, 5.6 MB each.
+    /// Which of the skin's render vertices are the head's; no triangle has some that are and some
+    /// that are not.
     #[must_use]
-    pub fn painted_skin_mask(&self, scalp: ScalpShade, beard: Whiskers) -> &Arc<Texture> {
-        if scalp == ScalpShade::Full && beard == Whiskers::None {
-            return &self.skin_mask;
-        }
-        self.painted[scalp as usize * Whiskers::ALL.len() + beard as usize]
-            .get_or_init(|| whiskers::mask(&self.data, &self.skin_mask, scalp, beard))
+    pub fn on_head(&self) -> &[bool] {
+        &self.on_head
+    }
+
+    /// Texture coordinates of the garment shell's render vertices, u then v, v down: every place has
+    /// its own, and a cloth's pattern repeats [`CLOTH_REPEAT`] times over 0..1.
+    #[must_use]
+    pub fn shell_uvs(&self) -> &[f32] {
+        &self.shell_uvs
+    }
+
+    /// Masks over the garment shell: red seams, green what is sewn on, blue darker parts, alpha
+    /// hollows. 5.6 MB each.
+    #[must_use]
+    pub fn sewn_mask(&self, kind: Sewn) -> &Arc<Texture> {
+        self.painted.sewn[kind as usize].get_or_init(|| maps::sewn_mask(&self.data, kind))
+    }
+
+    /// Masks over the head: red lips, green brows, blue flushed places, alpha the hair that shades
+    /// scalp and face. 1.4 MB each.
+    #[must_use]
+    pub fn head_mask(&self, scalp: ScalpShade, beard: Whiskers) -> &Arc<Texture> {
+        self.painted.head_masks[scalp as usize * Whiskers::ALL.len() + beard as usize].get_or_init(
+            || match (scalp, beard) {
+                (ScalpShade::Full, Whiskers::None) => maps::head_mask(&self.data),
+                _ => {
+                    let plain = self.head_mask(ScalpShade::Full, Whiskers::None);
+                    maps::head_mask_with(&self.data, plain, scalp, beard)
+                }
+            },
+        )
+    }
+
+    /// Masks over the rest of the skin: red the mouth's inside, blue flushed places, alpha nails.
+    #[must_use]
+    pub fn body_mask(&self) -> &Arc<Texture> {
+        self.painted.body_mask.get_or_init(|| maps::body_mask(&self.data))
+    }
+
+    /// Colour of the head's skin against its mean, times [`NEUTRAL_TINT`].
+    #[must_use]
+    pub fn head_tint(&self, freckles: Freckles) -> &Arc<Texture> {
+        self.painted.head_tints[freckles as usize]
+            .get_or_init(|| maps::head_tint(&self.data, freckles))
+    }
+
+    /// An old head's furrows and spots: their shade round 0.5, and their normals.
+    #[must_use]
+    pub fn head_age(&self) -> &[Arc<Texture>; 2] {
+        self.painted.head_age.get_or_init(|| maps::head_age(&self.data))
     }
 
     /// Masks over an eyeball: red iris, green pupil and its dark rim, blue the veined outer white, alpha a
@@ -315,13 +384,6 @@ fn reach_margins_m(data: &FigureData, skin: &[SkinVertex]) -> [f64; JOINT_COUNT]
     let joints = data.groups[GroupId::Joints as usize].first as usize;
     let (all, few) = (reach(0..joints), reach(0..coarse));
     std::array::from_fn(|j| all[j] - few[j])
-}
-
-fn mask_texture(planar: &[u8]) -> Texture {
-    let texels = planar.len() / 4;
-    let channel = |c: usize, i: usize| u32::from(planar[c * texels + i]) << (8 * c);
-    let top = (0..texels).map(|i| (0..4).map(|c| channel(c, i)).sum()).collect();
-    with_mips(texels.isqrt().ilog2(), top)
 }
 
 /// All levels of a mask by 2x2 means, rounded to nearest.
@@ -455,7 +517,8 @@ mod tests {
     #[test]
     fn the_smallest_mip_is_the_mean() {
         let figure = figure();
-        for t in [figure.skin_mask(), figure.eye_mask()] {
+        let head = figure.head_mask(ScalpShade::Full, Whiskers::None);
+        for t in [head, figure.body_mask(), figure.eye_mask()] {
             assert_eq!(t.texels.len(), Texture::level_offset(t.log2_size, t.log2_size) + 1);
             let side = 1usize << t.log2_size;
             for c in [0, 8, 16, 24] {

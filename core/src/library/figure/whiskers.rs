@@ -1,14 +1,7 @@
-//! Where hair grows on face and scalp, and the skin masks with its shade painted in.
+//! Where hair grows on face and scalp.
 //!
-//! Fields over the template (metres; +Y up, +Z forward), so that they fit every face. The masks
-//! are the skin's own ([`super::Figure::skin_mask`]) with other scalps: what grows sparsely, or
-//! shows through, is a shade of the skin and no geometry.
-
-use std::sync::Arc;
-
-use super::data::FigureData;
-use super::{GroupId, with_mips};
-use crate::library::texture::Texture;
+//! Fields over the template (metres; +Y up, +Z forward), so that they fit every face. What grows
+//! sparsely, or shows through, is a shade of the skin and no geometry: [`super::maps`] paints it.
 
 /// What of the scalp is shaded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -108,7 +101,7 @@ const LIPS_Y: f32 = 0.6625;
 const LIPS_HALF_M: f32 = 0.0085;
 
 /// Share of the hair's colour in the skin under a beard.
-const fn shade(style: Whiskers) -> f32 {
+const fn density(style: Whiskers) -> f32 {
     match style {
         Whiskers::None => 0.0,
         Whiskers::Stubble => 0.42,
@@ -116,77 +109,23 @@ const fn shade(style: Whiskers) -> f32 {
     }
 }
 
-/// The skin's mask with another scalp and a beard in its alpha.
-pub(super) fn mask(
-    data: &FigureData,
-    plain: &Texture,
-    scalp: ScalpShade,
-    style: Whiskers,
-) -> Arc<Texture> {
-    let side = 1usize << plain.log2_size;
-    let mut top = plain.texels[..side * side].to_vec();
-    let paint = |texel: &mut u32, at: [f32; 3]| {
-        let alpha = (*texel >> 24) as f32 / 255.0;
-        let scalp = alpha
-            * match scalp {
-                ScalpShade::Full => 1.0,
-                ScalpShade::Wreath => wreath(at).max(0.10),
-                ScalpShade::Shaven => 0.10,
-            };
-        let beard = shade(style) * step(-0.003, 0.005, beard(style, at));
-        let byte = (scalp.max(beard) * 255.0 + 0.5) as u32;
-        *texel = *texel & 0x00ff_ffff | byte << 24;
-    };
-    each_head_texel(data, side, |i, at| paint(&mut top[i], at));
-    Arc::new(with_mips(plain.log2_size, top))
-}
-
-/// Calls `f` with every texel of the head's skin and its place on the template, each once.
-fn each_head_texel(data: &FigureData, side: usize, mut f: impl FnMut(usize, [f32; 3])) {
-    let group = &data.groups[GroupId::Skin as usize];
-    let n = data.vertex_count();
-    let mut done = vec![false; side * side];
-    for t in group.lods[0].triangles.chunks_exact(3) {
-        let r = [t[0], t[1], t[2]].map(usize::from);
-        let v = r.map(|r| group.first as usize + usize::from(group.render[r]));
-        if v.iter().all(|&v| data.positions[n + v] < 0.58) {
-            continue;
-        }
-        let [a, b, c] = r.map(|r| [0, 1].map(|k| group.uvs[2 * r + k] * side as f32));
-        let cross = |o: [f32; 2], p: [f32; 2], q: [f32; 2]| {
-            (p[0] - o[0]) * (q[1] - o[1]) - (p[1] - o[1]) * (q[0] - o[0])
+/// How much hair shades the skin at a place whose scalp the figure's own mask shades by `alpha`.
+pub(super) fn shade(alpha: f32, scalp: ScalpShade, style: Whiskers, at: [f32; 3]) -> f32 {
+    let scalp = alpha
+        * match scalp {
+            ScalpShade::Full => 1.0,
+            ScalpShade::Wreath => wreath(at).max(0.10),
+            ScalpShade::Shaven => 0.10,
         };
-        let area = cross(a, b, c);
-        if area.abs() < 1e-9 {
-            continue;
-        }
-        // A margin of one texel round each triangle, which whoever comes later leaves alone.
-        let range = |k: usize| {
-            let low = a[k].min(b[k]).min(c[k]).floor() - 1.0;
-            let high = a[k].max(b[k]).max(c[k]).ceil() + 1.0;
-            low.max(0.0) as usize..(high.max(0.0) as usize).min(side)
-        };
-        for y in range(1) {
-            for x in range(0) {
-                let p = [x as f32 + 0.5, y as f32 + 0.5];
-                let w = [cross(b, c, p) / area, cross(c, a, p) / area, cross(a, b, p) / area];
-                let i = y * side + x;
-                if !done[i] && w.iter().all(|&w| w >= -0.05) {
-                    done[i] = true;
-                    let at = [0, 1, 2].map(|axis| {
-                        (0..3).map(|k| data.positions[axis * n + v[k]] * w[k]).sum::<f32>()
-                    });
-                    f(i, at);
-                }
-            }
-        }
-    }
+    // Stubble thins out towards its border; a beard hides where it begins.
+    let (none, full) = if style == Whiskers::Stubble { (-0.005, 0.014) } else { (-0.003, 0.005) };
+    scalp.max(density(style) * step(none, full, beard(style, at)))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::library::figure::Figure;
+    use crate::library::figure::{Figure, GroupId};
 
     #[test]
     fn beards_leave_lips_eyes_and_throat_free() {
@@ -223,8 +162,8 @@ mod tests {
     #[test]
     fn a_painted_mask_changes_the_scalp_alone() {
         let figure = Figure::built_in().unwrap();
-        let plain = figure.skin_mask();
-        let painted = figure.painted_skin_mask(ScalpShade::Wreath, Whiskers::Full);
+        let plain = figure.head_mask(ScalpShade::Full, Whiskers::None);
+        let painted = figure.head_mask(ScalpShade::Wreath, Whiskers::Full);
         assert_eq!(painted.texels.len(), plain.texels.len());
         let (mut more, mut less) = (0, 0);
         let side = 1usize << plain.log2_size;

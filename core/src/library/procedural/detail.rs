@@ -2,7 +2,7 @@
 //! their colour from elsewhere.
 
 use super::Painting;
-use super::canvas::{Canvas, SIDE, smooth};
+use super::canvas::{Canvas, SIDE, cos_turns, smooth};
 use super::dice::Dice;
 use super::field::{Cells, Field};
 
@@ -64,10 +64,36 @@ pub(super) fn hair(dice: &mut Dice) -> Painting {
     let locks = Field::noise(dice, 24, 2, 2, 0.6).warped([&wave, &still], 9.0);
     let strands = Field::noise(dice, 128, 3, 2, 0.9).warped([&wave, &still], 9.0);
     let tone = Field::noise(dice, 3, 4, 3, 0.5);
-    grey(Field::from_fn(|x, y| {
+    let color = grey(Field::from_fn(|x, y| {
         let i = y * SIDE + x;
         0.24 * locks.0[i] + 0.3 * strands.0[i] + 0.08 * tone.0[i]
-    }))
+    }));
+    let height = Field::from_fn(|x, y| {
+        let i = y * SIDE + x;
+        3.2 * locks.0[i] + 0.9 * strands.0[i]
+    });
+    Painting { height: Some(height), ..color }
+}
+
+/// Tight coils, side by side.
+pub(super) fn curls(dice: &mut Dice) -> Painting {
+    const COUNT: usize = 13;
+    let cells = Cells::new(dice, COUNT, 0.95);
+    let bend = [Field::fbm(dice, 8, 3), Field::fbm(dice, 8, 3)];
+    let fine = Field::fbm(dice, 48, 3);
+    let size = SIDE as f32 / COUNT as f32;
+    let height = Field::from_fn(|x, y| {
+        let i = y * SIDE + x;
+        let (dx, dy) = (11.0 * bend[0].0[i], 11.0 * bend[1].0[i]);
+        let near = cells.near(x as f32 + dx, y as f32 + dy);
+        let out = near.first / size;
+        // A dome of wound strands, and a gap to the next.
+        let gap = smooth(0.0, 0.22 * size, near.second - near.first);
+        let wound = 0.5 + 0.5 * cos_turns(3.0 * out);
+        gap * (0.75 - 0.6 * out * out + 0.25 * wound) + 0.16 * fine.0[i]
+    });
+    let color = grey(height.clone().map(|h| 0.55 * h));
+    Painting { height: Some(height.map(|h| 0.22 * size * h)), ..color }
 }
 
 /// Threads and lint.

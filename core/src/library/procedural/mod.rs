@@ -126,10 +126,11 @@ const FAMILIES: [Family; 50] = [
 ];
 
 /// Fine detail, one texture each.
-const DETAILS: [Family; 4] = [
+const DETAILS: [Family; 5] = [
     detail("cloth", detail::cloth),
+    Family { relief: true, ..detail("curls", detail::curls) },
     Family { relief: true, ..detail("folds", detail::folds) },
-    detail("hair", detail::hair),
+    Family { relief: true, ..detail("hair", detail::hair) },
     detail("skin", detail::skin),
 ];
 
@@ -268,7 +269,7 @@ mod tests {
         assert!(sorted(normal_ids()) > 25);
         assert_eq!(
             ids(Kind::Detail),
-            ["detail/cloth", "detail/folds", "detail/hair", "detail/skin"]
+            ["detail/cloth", "detail/curls", "detail/folds", "detail/hair", "detail/skin"]
         );
         for family in families().filter(|f| f.kind == Kind::Procedural) {
             assert!(family.variants >= 3, "{}", family.name);
