@@ -119,8 +119,26 @@ const STRONG: [&str; 10] = [
 ];
 const STRONG_STD: f64 = 0.12;
 
-/// Face targets that are one shape: a single one, or those of the left and the right side.
-pub(super) type FaceShape = Vec<String>;
+/// Face targets that are one shape.
+#[derive(Clone, Debug)]
+pub(super) struct FaceShape {
+    /// A single one, or those of the left and the right side.
+    names: Vec<String>,
+    /// Bit k: it belongs to the k-th group of [`MAIN`].
+    main: u16,
+    /// It changes as much as those of [`STRONG`].
+    strong: bool,
+}
+
+impl FaceShape {
+    fn new(names: Vec<String>) -> Self {
+        let is_of = |group: &[&str]| group.iter().any(|start| names[0].starts_with(start));
+        let bits = MAIN.iter().enumerate().map(|(k, group)| u16::from(is_of(group)) << k);
+        let main = bits.fold(0, |all, bit| all | bit);
+        let strong = names.iter().any(|name| STRONG.iter().any(|s| name.contains(s)));
+        Self { names, main, strong }
+    }
+}
 
 pub(super) fn face_shapes(targets: &[String]) -> Vec<FaceShape> {
     let known: BTreeSet<&str> = targets.iter().map(String::as_str).collect();
@@ -134,7 +152,7 @@ pub(super) fn face_shapes(targets: &[String]) -> Vec<FaceShape> {
     for name in targets {
         if other_side(name, "r-", "l-").is_none() {
             let sides = std::iter::once(name.as_str()).chain(other_side(name, "l-", "r-"));
-            shapes.push(sides.map(str::to_owned).collect());
+            shapes.push(FaceShape::new(sides.map(str::to_owned).collect()));
         }
     }
     shapes
@@ -314,8 +332,8 @@ fn face_shape(look: &document::Look, shapes: &[FaceShape], source: Source) -> Ve
     let mut order: Stream = source.of(keys::FACE_ORDER).stream();
     let mut rest: Vec<usize> = (0..shapes.len()).collect();
     let mut chosen = Vec::new();
-    for group in MAIN.iter().take(wanted) {
-        let is_of = |shape: usize| group.iter().any(|start| shapes[shape][0].starts_with(start));
+    for group in 0..MAIN.len().min(wanted) {
+        let is_of = |shape: usize| shapes[shape].main >> group & 1 == 1;
         let of: Vec<usize> = (0..rest.len()).filter(|i| is_of(rest[*i])).collect();
         if !of.is_empty() {
             chosen.push(rest.swap_remove(of[order.below(of.len())]));
@@ -328,10 +346,10 @@ fn face_shape(look: &document::Look, shapes: &[FaceShape], source: Source) -> Ve
     for shape in chosen {
         // By the shape's own number: which others were chosen changes nothing.
         let u = source.of(keys::FACE_AMOUNT).lane(shape as u16).uniform();
-        let strong = shapes[shape].iter().any(|name| STRONG.iter().any(|s| name.contains(s)));
-        let std = if strong { look.face_std.min(STRONG_STD) } else { look.face_std };
+        let shape = &shapes[shape];
+        let std = if shape.strong { look.face_std.min(STRONG_STD) } else { look.face_std };
         let amount = (std * quantile::normal(u)).abs().min(look.face_max);
-        face.extend(shapes[shape].iter().map(|name| (name.clone(), amount)));
+        face.extend(shape.names.iter().map(|name| (name.clone(), amount)));
     }
     face
 }
