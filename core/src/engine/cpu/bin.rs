@@ -136,6 +136,11 @@ impl ChunksByTile {
 #[inline(always)]
 fn each_tile([x0, x1, y0, y1]: [u32; 4], rect: [u32; 4], mut f: impl FnMut(usize)) {
     let columns = rect[1] - rect[0] + 1;
+    if x0 == x1 && y0 == y1 {
+        // As most triangles do.
+        f(((y0 - rect[2]) * columns + (x0 - rect[0])) as usize);
+        return;
+    }
     for y in y0..y1 + 1 {
         let row = (y - rect[2]) * columns;
         for x in x0..x1 + 1 {

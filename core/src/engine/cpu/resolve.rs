@@ -70,15 +70,24 @@ fn resolve_body<const AVX2: bool, const S: usize>(
     near_m: f32,
     out: &mut Resolved,
 ) {
-    let pixels = objects.chunks_exact(S).zip(depth.chunks_exact(S));
-    for (slot, (objects, depth)) in pixels.enumerate() {
-        let (object, nearest) = if uniform[slot * S / BLOCK] {
-            (objects[0], depth.iter().fold(0.0, |a: f32, z| if *z > a { *z } else { a }))
+    let blocks = objects.as_chunks::<BLOCK>().0.iter().zip(depth.as_chunks::<BLOCK>().0);
+    for (block, (objects, depth)) in blocks.enumerate() {
+        let first = block * (BLOCK / S);
+        let pixels = first..first + BLOCK / S;
+        let object = out.object[pixels.clone()].iter_mut();
+        let places = object.zip(&mut out.distance_m[pixels]);
+        let samples = objects.chunks_exact(S).zip(depth.chunks_exact(S));
+        if uniform[block] {
+            for ((object, distance), (objects, depth)) in places.zip(samples) {
+                *object = [objects[0]];
+                *distance = [depth.iter().fold(0.0, |a: f32, z| if *z > a { *z } else { a })];
+            }
         } else {
-            vote::<S>(objects, depth)
-        };
-        out.object[slot] = [object];
-        out.distance_m[slot] = [nearest];
+            for ((object, distance), (objects, depth)) in places.zip(samples) {
+                let (winner, nearest) = vote::<S>(objects, depth);
+                (*object, *distance) = ([winner], [nearest]);
+            }
+        }
     }
     for eight in out.distance_m.as_flattened_mut().chunks_exact_mut(LANES) {
         let depth = F32x8::<AVX2>::load(eight);
