@@ -1,4 +1,8 @@
 //! People who are listed, and people as they can be listed.
+//!
+//! A settled person becomes the value that lists them in another config, and listed faces are held
+//! against what the catalogue knows. How a listed person is completed stands with what is drawn, in
+//! `body`, `look` and `outfit`; files are not read here.
 
 use std::collections::BTreeMap;
 

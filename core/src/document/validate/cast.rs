@@ -1,4 +1,7 @@
-//! People who are listed.
+//! People who are listed: which of their numbers and names make no sense.
+//!
+//! Each problem names the entry and its field. Files have been read before; what only the asset
+//! library knows, as the names of face shapes, is checked by the sampler.
 
 use std::collections::BTreeMap;
 

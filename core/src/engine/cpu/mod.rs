@@ -4,7 +4,7 @@
 //! |---|---|---|
 //! | skin | `skin`, `project` | meshes, palette -> placed and projected vertices |
 //! | visibility | `chunk`, `setup`, `clip`, `bin` | -> triangles by tile |
-//! | shadow | `shadow` | -> the sun's depth map, fitted to what is seen |
+//! | shadow | `shadow` | -> the sun's depth map, fitted to what is seen, rastered where it is looked up |
 //! | per tile (`tile`): visibility | `raster`, `samples` | -> object, triangle and depth of each sample |
 //! | per tile: shade | `fragment`, `shade` | -> linear display light |
 //! | per tile: display | `display` | -> the 8-bit picture |

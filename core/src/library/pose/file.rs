@@ -388,6 +388,7 @@ mod tests {
             assert!(error.contains(expected), "{text}: {error}");
         }
     }
+
     #[test]
     fn files_of_folders_are_read_remembered_and_refused_by_name() {
         let dir = tempfile::tempdir().unwrap();
