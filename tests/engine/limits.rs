@@ -4,7 +4,7 @@ use figurant_core::draw::DrawList;
 use figurant_core::draw::abi::{PointLight, Sun};
 use figurant_core::engine::cpu::{CpuEngine, CpuOptions, SimdChoice};
 use figurant_core::engine::{Engine, EngineError};
-use figurant_core::library::texture::{Encoding, Texture};
+use figurant_core::library::texture::{Encoding, Texture, color_from_srgb8};
 use figurant_core::plan::{Output, StageTimes};
 use figurant_tests::drawlists::{add, empty, mixed, view};
 use figurant_tests::meshes::{self};
@@ -24,13 +24,17 @@ fn lit(seed: u64, samples: u32) -> DrawList {
         radius_m: 0.05,
     }];
     let checks = (0..64 * 64).map(|i: u32| {
-        if (i % 64 / 8 + i / 512).is_multiple_of(2) { 0x00e0_d0c0 } else { 0x0030_4050 }
+        let light = (i % 64 / 8 + i / 512).is_multiple_of(2);
+        color_from_srgb8(if light { [192, 208, 224] } else { [80, 64, 48] })
     });
     let mut texels: Vec<u32> = checks.collect();
     for level in 1..=6 {
-        texels.resize(texels.len() + (1usize << (2 * (6 - level))), 0x0090_8878);
+        texels.resize(
+            texels.len() + (1usize << (2 * (6 - level))),
+            color_from_srgb8([120, 136, 144]),
+        );
     }
-    list.textures.push(Arc::new(Texture { log2_size: 6, encoding: Encoding::Srgb, texels }));
+    list.textures.push(Arc::new(Texture { log2_size: 6, encoding: Encoding::Color, texels }));
     for (i, m) in list.materials.iter_mut().enumerate() {
         m.albedo_map = (i % 2 == 0).then_some(0);
         m.normal_map = (i % 3 == 0).then_some(0);

@@ -2,7 +2,7 @@
 
 use figurant_core::draw::DrawList;
 use figurant_core::draw::abi::{Material, PointLight, Sun};
-use figurant_core::library::texture::{Encoding, Texture};
+use figurant_core::library::texture::{Encoding, Texture, color_from_srgb8};
 use figurant_core::plan::Output;
 use figurant_tests::drawlists::{self, add, empty, mixed, view};
 use figurant_tests::meshes::{self, Dice};
@@ -140,9 +140,10 @@ fn an_edge_is_blended_by_coverage_after_tone_mapping() {
 #[test]
 fn textures_are_read_upright_repeated_and_filtered_in_linear_light() {
     // Four colours, one per texel.
-    let texels = vec![0x0000_00ff, 0x0000_ff00, 0x00ff_0000, 0x00ff_ffff, 0x0080_8080];
+    let (red, green, blue) = ([255, 0, 0], [0, 255, 0], [0, 0, 255]);
+    let texels = [red, green, blue, [255; 3], [128; 3]].map(color_from_srgb8).to_vec();
     let mut list = empty(view(64, 64, 64.0), 4);
-    list.textures.push(Arc::new(Texture { log2_size: 1, encoding: Encoding::Srgb, texels }));
+    list.textures.push(Arc::new(Texture { log2_size: 1, encoding: Encoding::Color, texels }));
     list.lights.sky_lux = [3.0; 3];
     list.lights.ground_lux = [3.0; 3];
     let material = Material {
@@ -160,9 +161,8 @@ fn textures_are_read_upright_repeated_and_filtered_in_linear_light() {
     assert_eq!(strongest(16, 47), [false, false, true], "v runs down");
     assert_eq!(strongest(47, 47), [true, true, true]);
     // Halfway between black and white in green, top right to bottom left of two texels: linear.
-    let black_and_white = vec![0x0000_0000, 0x00ff_ffff, 0x0000_0000, 0x00ff_ffff, 0x0080_8080];
-    list.textures[0] =
-        Arc::new(Texture { log2_size: 1, encoding: Encoding::Srgb, texels: black_and_white });
+    let texels = [0, 255, 0, 255, 128].map(|v| color_from_srgb8([v; 3])).to_vec();
+    list.textures[0] = Arc::new(Texture { log2_size: 1, encoding: Encoding::Color, texels });
     let lit = |list: &DrawList, x: usize| {
         let value = pixel(&render(list, &[Output::Rgb]), x, 32)[1];
         nits(f64::from(value), 1.0)

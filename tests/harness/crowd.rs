@@ -7,7 +7,7 @@ use std::sync::Arc;
 use figurant_core::draw::DrawList;
 use figurant_core::draw::abi::{Material, PointLight, Sun};
 use figurant_core::library::mesh::{Mesh, SkinVertex};
-use figurant_core::library::texture::{Encoding, Texture};
+use figurant_core::library::texture::{Encoding, Texture, colors_from_srgb};
 use glam::{DAffine3, DQuat, DVec3};
 
 use crate::drawlists::{add, add_skinned, empty, view};
@@ -79,10 +79,8 @@ fn texture(color: impl Fn(usize, usize) -> [f64; 3]) -> Arc<Texture> {
     let mut level: Vec<[f64; 3]> = (0..side * side).map(|i| color(i % side, i / side)).collect();
     let mut texels = Vec::new();
     loop {
-        texels.extend(level.iter().map(|c| {
-            let [r, g, b] = c.map(|v| (v.clamp(0.0, 1.0) * 255.0 + 0.5) as u32);
-            r | g << 8 | b << 16 | 255 << 24
-        }));
+        let pixels: Vec<[f32; 3]> = level.iter().map(|c| c.map(|v| v as f32)).collect();
+        texels.extend(colors_from_srgb(&pixels));
         if side == 1 {
             break;
         }
@@ -100,7 +98,7 @@ fn texture(color: impl Fn(usize, usize) -> [f64; 3]) -> Arc<Texture> {
             .collect();
         side = half;
     }
-    Arc::new(Texture { log2_size: 9, encoding: Encoding::Srgb, texels })
+    Arc::new(Texture { log2_size: 9, encoding: Encoding::Color, texels })
 }
 
 fn textures(dice: &mut Dice) -> Vec<Arc<Texture>> {

@@ -93,7 +93,7 @@ pub struct Draw {
 pub struct Material {
     /// Linear.
     pub base_color: [f32; 3],
-    /// sRGB texture, multiplies the base colour.
+    /// Colour texture, multiplies the base colour.
     pub albedo_map: Option<u32>,
     /// Linear texture, its red channel multiplies the albedo by `1 + detail_strength * (2 r - 1)`.
     pub detail_map: Option<u32>,

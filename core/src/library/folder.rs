@@ -154,7 +154,7 @@ pub(super) fn decode(
     }
     let rgba = picture.into_rgba8();
     let (width, height) = rgba.dimensions();
-    Ok(Texture::from_rgba8(width, height, rgba.as_raw(), Encoding::Srgb, max_log2_size))
+    Ok(Texture::from_rgba8(width, height, rgba.as_raw(), Encoding::Color, max_log2_size))
 }
 
 /// Whether a JPEG goes on to its end marker: decoders fill what is missing with grey.

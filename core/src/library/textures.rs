@@ -2,11 +2,11 @@
 //!
 //! | ids | what |
 //! |---|---|
-//! | `procedural/<family>/<nn>` | sRGB, tiles: for walls, floors and objects |
-//! | `cloth/<family>/<nn>` | sRGB, tiles, light: multiplied by a garment's colour |
+//! | `procedural/<family>/<nn>` | colour, tiles: for walls, floors and objects |
+//! | `cloth/<family>/<nn>` | colour, tiles, light: multiplied by a garment's colour |
 //! | `detail/<skin, hair, curls, cloth, folds>` | plain numbers round 0.5, tiles |
 //! | `normal/<...>` | plain numbers, normals of the computed texture of that name |
-//! | `folder/<folder>/<file>` | sRGB, a user's JPEG or PNG by its path below the folder |
+//! | `folder/<folder>/<file>` | colour, a user's JPEG or PNG by its path below the folder |
 //!
 //! Nothing is computed or opened before it is asked for; what was used last is kept up to a limit
 //! of memory. A texture's pixels do not depend on what was asked for before.
@@ -241,6 +241,8 @@ mod tests {
     use image::{DynamicImage, ImageFormat};
 
     use super::*;
+    use crate::base::color::srgb_from_linear;
+    use crate::library::texture::{color_from_srgb8, linear_from_color};
 
     fn library(folders: &[&Path]) -> Result<TextureLibrary, TextureError> {
         TextureLibrary::new(&folders.iter().map(|p| p.to_path_buf()).collect::<Vec<_>>())
@@ -364,18 +366,17 @@ mod tests {
         {
             let t = get(name, &encoded(&plain, format)).unwrap();
             assert_eq!(t.log2_size, 6);
-            let [r, g, b, a] = t.texels[10 * 64 + 50].to_le_bytes();
-            assert!(
-                r.abs_diff(50) < 8 && g.abs_diff(10) < 8 && b.abs_diff(77) < 8 && a == 255,
-                "{r} {g} {b}"
-            );
+            let light = linear_from_color(t.texels[10 * 64 + 50]);
+            for (light, byte) in light.into_iter().zip([50.0, 10.0, 77.0]) {
+                assert!((srgb_from_linear(light) * 255.0 - byte).abs() < 8.0, "{light} {byte}");
+            }
         }
         let grey = DynamicImage::from(plain.to_luma8());
         assert!(get("a.png", &encoded(&grey, ImageFormat::Png)).is_ok());
         assert!(get("a.jpg", &encoded(&grey, ImageFormat::Jpeg)).is_ok());
         let deep = DynamicImage::from(plain.to_rgb16());
         let t = get("a.png", &encoded(&deep, ImageFormat::Png)).unwrap();
-        assert_eq!(t.texels[10 * 64 + 50].to_le_bytes(), [50, 10, 77, 255]);
+        assert_eq!(t.texels[10 * 64 + 50], color_from_srgb8([50, 10, 77]));
         let clear = DynamicImage::from(plain.to_rgba16());
         assert!(get("a.png", &encoded(&clear, ImageFormat::Png)).is_ok());
         // Four inks, as printers write them.

@@ -5,12 +5,14 @@
 
 use super::dice::Dice;
 use super::field::Field;
-use crate::library::texture::{Encoding, Texture};
+use crate::library::texture::{Encoding, Texture, colors_from_srgb, steps};
 
 /// log2 of the canvas's side.
 pub(super) const LOG2_SIDE: u32 = 9;
 /// Pixels along a side of the canvas.
 pub(super) const SIDE: usize = 1 << LOG2_SIDE;
+/// The same as a length.
+pub(super) const FULL: f32 = SIDE as f32;
 
 /// An sRGB colour, 0..1 each.
 pub(super) type Rgb = [f32; 3];
@@ -48,11 +50,16 @@ pub(super) fn smooth(low: f32, high: f32, v: f32) -> f32 {
     t * t * (3.0 - 2.0 * t)
 }
 
-/// The largest whole number that is not above `v`. The standard function is a call on machines
-/// whose oldest models lack the instruction.
+/// The largest whole number that is not above `v`, which is within four millions of 0.
+///
+/// The standard function is a call on machines whose oldest models lack the instruction, and the
+/// standard conversion has to look for numbers out of range.
+#[inline(always)]
 pub(super) fn floor(v: f32) -> i32 {
-    let cut = v as i32;
-    cut - i32::from(v < cut as f32)
+    /// 1.5 * 2^23: a sum with it has no binary places left, and the number in its lowest bits.
+    const SHIFT: f32 = 12_582_912.0;
+    let nearest = (v + SHIFT).to_bits().wrapping_sub(SHIFT.to_bits()) as i32;
+    nearest - i32::from(nearest as f32 > v)
 }
 
 /// What is above the largest whole number that is not above `v`.
@@ -269,15 +276,14 @@ impl Canvas {
 
     /// The finished texture, opaque.
     pub fn into_texture(self, encoding: Encoding) -> Texture {
-        let texels = self
-            .0
-            .iter()
-            .map(|p| {
-                // By way of i32, which machines convert to directly.
-                let [r, g, b] = p.map(|v| (v.clamp(0.0, 1.0) * 255.0 + 0.5) as i32 as u32);
-                r | g << 8 | b << 16 | 0xff00_0000
-            })
-            .collect();
+        let plain = |p: &Rgb| {
+            let [r, g, b] = p.map(|v| steps(v, 255.0));
+            r | g << 8 | b << 16 | 0xff00_0000
+        };
+        let texels = match encoding {
+            Encoding::Color => colors_from_srgb(&self.0),
+            Encoding::Linear => self.0.iter().map(plain).collect(),
+        };
         Texture::from_level0(LOG2_SIDE, encoding, texels)
     }
 }

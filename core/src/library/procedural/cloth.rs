@@ -5,12 +5,12 @@
 
 use super::Painting;
 use super::canvas::{
-    Canvas, Rgb, SIDE, WHITE, cos_turns, fract, hex, hsv, lit, mix, palette, sin_turns, smooth,
+    Canvas, FULL, Rgb, SIDE, WHITE, cos_turns, fract, hex, hsv, lit, mix, palette, sin_turns,
+    smooth,
 };
 use super::dice::Dice;
 use super::field::{Cells, Field};
 
-const FULL: f32 = SIDE as f32;
 const GROUND: Rgb = [0.95, 0.95, 0.95];
 
 /// Threads of a plain weave, and the unevenness of real yarn, over any print.

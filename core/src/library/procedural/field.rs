@@ -25,21 +25,27 @@ impl Field {
     /// Gradient noise in `octaves`, the first with `columns` by `rows` cells, each further one
     /// twice as fine and `gain` times as strong. About -1..1, mean 0.
     pub fn noise(dice: &mut Dice, columns: usize, rows: usize, octaves: u32, gain: f32) -> Self {
-        let mut field = Self::filled(0.0);
+        let mut all = Vec::new();
         let (mut amplitude, mut total) = (1.0, 0.0);
         for octave in 0..octaves {
             let (c, r) = (columns << octave, rows << octave);
             if c > SIDE / 2 || r > SIDE / 2 {
                 break;
             }
-            field.add_octave(dice, c, r, amplitude);
+            all.push(Octave::new(dice, c, r, amplitude));
             total += amplitude * amplitude;
             amplitude *= gain;
         }
         // One octave reaches 0.7; a sum of several is more often near its middle.
         let scale = 1.35 / f32::sqrt(total);
-        for v in &mut field.0 {
-            *v *= scale;
+        let mut field = Self::filled(0.0);
+        for (y, row) in field.0.as_chunks_mut::<SIDE>().0.iter_mut().enumerate() {
+            for octave in &mut all {
+                octave.add_row(y, row);
+            }
+            for v in row {
+                *v *= scale;
+            }
         }
         field
     }
@@ -47,51 +53,6 @@ impl Field {
     /// Noise with square cells.
     pub fn fbm(dice: &mut Dice, cells: usize, octaves: u32) -> Self {
         Self::noise(dice, cells, cells, octaves, 0.5)
-    }
-
-    /// One octave of gradient noise (Perlin, "Improving noise", 2002). In a row of a cell each
-    /// corner's share is a straight line in x, so a pixel costs two of them and a blend.
-    fn add_octave(&mut self, dice: &mut Dice, columns: usize, rows: usize, amplitude: f32) {
-        let gradients: Vec<[f32; 2]> = (0..columns * rows).map(|_| dice.direction()).collect();
-        // Where in its cell each column of pixels lies, and where each cell begins.
-        let mut across = Vec::with_capacity(SIDE);
-        let mut starts = Vec::with_capacity(columns + 1);
-        for x in 0..SIDE {
-            let p = (x as f32 + 0.5) * columns as f32 / SIDE as f32;
-            let cell = (p as usize).min(columns - 1);
-            let u = p - cell as f32;
-            across.push([u, fade(u)]);
-            if cell == starts.len() {
-                starts.push(x);
-            }
-        }
-        starts.push(SIDE);
-        let mut lines = vec![[0.0f32; 2]; columns + 1];
-        for y in 0..SIDE {
-            let p = (y as f32 + 0.5) * rows as f32 / SIDE as f32;
-            let cell = (p as usize).min(rows - 1);
-            let v = p - cell as f32;
-            let blend = fade(v);
-            let upper = &gradients[cell * columns..][..columns];
-            let lower = &gradients[(cell + 1) % rows * columns..][..columns];
-            for ((line, a), b) in lines.iter_mut().zip(upper).zip(lower) {
-                let (ya, yb) = (a[1] * v, b[1] * (v - 1.0));
-                *line = [
-                    amplitude * (ya + (yb - ya) * blend),
-                    amplitude * (a[0] + (b[0] - a[0]) * blend),
-                ];
-            }
-            lines[columns] = lines[0];
-            let row = &mut self.0[y * SIDE..][..SIDE];
-            for (ends, corners) in starts.windows(2).zip(lines.windows(2)) {
-                let ([a0, b0], [a1, b1]) = (corners[0], corners[1]);
-                let cell = ends[0]..ends[1];
-                for (value, &[u, t]) in row[cell.clone()].iter_mut().zip(&across[cell]) {
-                    let (left, right) = (a0 + b0 * u, a1 + b1 * (u - 1.0));
-                    *value += left + (right - left) * t;
-                }
-            }
-        }
     }
 
     /// The value at a pixel, which may lie outside the canvas.
@@ -129,6 +90,98 @@ impl Field {
         let sum: f64 = self.0.iter().map(|&v| f64::from(v)).sum();
         let shift = mean - (sum / (SIDE * SIDE) as f64) as f32;
         self.map(|v| v + shift)
+    }
+}
+
+/// One octave of gradient noise (Perlin, "Improving noise", 2002), row by row.
+///
+/// Within a row of cells the value is a sum of four products of a function of x and one of y: the
+/// functions of x are tabulated once for the row of cells, and a pixel costs four products.
+struct Octave {
+    columns: usize,
+    rows: usize,
+    amplitude: f32,
+    gradients: Vec<[f32; 2]>,
+    /// For each column of pixels: its cell, where in the cell it lies, and its blend.
+    across: Vec<(usize, f32, f32)>,
+    /// The row of cells that is tabulated.
+    tabulated: Option<usize>,
+    upper: Table,
+    lower: Table,
+}
+
+/// A row of gradients over all columns of pixels: the blend of what their x parts give, and of
+/// their y parts.
+struct Table {
+    x: Box<[f32; SIDE]>,
+    y: Box<[f32; SIDE]>,
+}
+
+impl Table {
+    fn fill(&mut self, across: &[(usize, f32, f32)], corners: &[[f32; 2]]) {
+        for ((&(cell, u, t), x), y) in across.iter().zip(self.x.iter_mut()).zip(self.y.iter_mut()) {
+            let next = if cell + 1 == corners.len() { 0 } else { cell + 1 };
+            let (left, right) = (corners[cell], corners[next]);
+            let (from_left, from_right) = (left[0] * u, right[0] * (u - 1.0));
+            *x = from_left + (from_right - from_left) * t;
+            *y = left[1] + (right[1] - left[1]) * t;
+        }
+    }
+}
+
+/// The cell of a pixel along an axis, and where in the cell it lies, 0..1.
+fn cell_of(pixel: usize, cells: usize) -> (usize, f32) {
+    let p = (pixel as f32 + 0.5) * cells as f32 / SIDE as f32;
+    let cell = (p as usize).min(cells - 1);
+    (cell, p - cell as f32)
+}
+
+impl Octave {
+    fn new(dice: &mut Dice, columns: usize, rows: usize, amplitude: f32) -> Self {
+        let column = |x: usize| {
+            let (cell, u) = cell_of(x, columns);
+            (cell, u, fade(u))
+        };
+        let empty = || Table { x: Box::new([0.0; SIDE]), y: Box::new([0.0; SIDE]) };
+        Self {
+            columns,
+            rows,
+            amplitude,
+            gradients: (0..columns * rows).map(|_| dice.direction()).collect(),
+            across: (0..SIDE).map(column).collect(),
+            tabulated: None,
+            upper: empty(),
+            lower: empty(),
+        }
+    }
+
+    /// Tabulates the gradients above a row of cells and those below it.
+    fn tabulate(&mut self, row: usize) {
+        if row > 0 && self.tabulated == Some(row - 1) {
+            std::mem::swap(&mut self.upper, &mut self.lower);
+        } else {
+            let corners = &self.gradients[row * self.columns..][..self.columns];
+            self.upper.fill(&self.across, corners);
+        }
+        let below = (row + 1) % self.rows;
+        let corners = &self.gradients[below * self.columns..][..self.columns];
+        self.lower.fill(&self.across, corners);
+        self.tabulated = Some(row);
+    }
+
+    fn add_row(&mut self, y: usize, out: &mut [f32; SIDE]) {
+        let (cell, v) = cell_of(y, self.rows);
+        if self.tabulated != Some(cell) {
+            self.tabulate(cell);
+        }
+        let below = self.amplitude * fade(v);
+        let above = self.amplitude - below;
+        let (above_y, below_y) = (above * v, below * (v - 1.0));
+        let (upper, lower) = (&self.upper, &self.lower);
+        for x in 0..SIDE {
+            out[x] += (above * upper.x[x] + above_y * upper.y[x])
+                + (below * lower.x[x] + below_y * lower.y[x]);
+        }
     }
 }
 

@@ -9,10 +9,12 @@ mod cloth;
 mod detail;
 mod dice;
 mod field;
+mod goods;
 mod letters;
 mod pattern;
-mod picture;
 mod plant;
+mod print;
+mod scenery;
 mod surface;
 
 use canvas::Canvas;
@@ -74,35 +76,35 @@ const fn detail(name: &'static str, paint: fn(&mut Dice) -> Painting) -> Family 
 /// All generators, by kind and name. Names and their numbers are for ever: scenes hold them.
 const FAMILIES: [Family; 50] = [
     relief("bark", 3, plant::bark),
-    wall("bokeh", 3, picture::bokeh),
+    wall("bokeh", 3, scenery::bokeh),
     relief("brick", 3, surface::brick),
     wall("camouflage", 3, pattern::camouflage),
     wall("carpet", 3, pattern::carpet),
     wall("checker", 3, pattern::checker),
-    wall("clouds", 3, picture::clouds),
-    wall("collage", 3, picture::collage),
+    wall("clouds", 3, scenery::clouds),
+    wall("collage", 3, print::collage),
     wall("dots", 3, pattern::dots),
-    wall("facade", 3, picture::facade),
+    wall("facade", 3, scenery::facade),
     wall("floral", 3, plant::floral),
     wall("gradient", 3, pattern::gradient),
-    wall("graffiti", 3, picture::graffiti),
+    wall("graffiti", 3, print::graffiti),
     wall("grass", 3, plant::grass),
-    wall("groceries", 3, picture::groceries),
+    wall("groceries", 3, goods::groceries),
     relief("ground", 3, surface::ground),
     relief("grunge", 3, surface::grunge),
-    wall("heap", 3, picture::heap),
-    wall("lake", 3, picture::lake),
+    wall("heap", 3, scenery::heap),
+    wall("lake", 3, scenery::lake),
     wall("leaves", 3, plant::leaves),
     wall("marble", 3, surface::marble),
     relief("metal", 3, surface::metal),
     wall("motif", 3, pattern::motif),
     wall("noise", 3, pattern::noise),
     wall("plaid", 3, pattern::plaid),
-    wall("shelf", 3, picture::shelf),
-    wall("sign", 3, picture::sign),
+    wall("shelf", 3, goods::shelf),
+    wall("sign", 3, print::sign),
     wall("stripes", 3, pattern::stripes),
     wall("terrazzo", 3, surface::terrazzo),
-    wall("text", 3, picture::text),
+    wall("text", 3, print::text),
     relief("tiles", 3, surface::tiles),
     relief("voronoi", 3, surface::voronoi),
     wall("waves", 3, pattern::waves),
@@ -145,7 +147,7 @@ impl Kind {
 
     const fn encoding(self) -> Encoding {
         match self {
-            Self::Procedural | Self::Cloth => Encoding::Srgb,
+            Self::Procedural | Self::Cloth => Encoding::Color,
             Self::Detail => Encoding::Linear,
         }
     }
@@ -228,6 +230,8 @@ fn normals(height: &Field) -> Canvas {
 mod tests {
     use super::canvas::{LOG2_SIDE, SIDE};
     use super::*;
+    use crate::base::color::srgb_from_linear;
+    use crate::library::texture::linear_from_color;
 
     fn picture(id: &str) -> Texture {
         generate(id).unwrap().0
@@ -249,8 +253,20 @@ mod tests {
         ids.into_iter().map(|id| (id.clone(), picture(&id))).collect()
     }
 
-    fn row(texture: &Texture, y: usize) -> impl Iterator<Item = [u8; 4]> + '_ {
-        texture.texels[y * SIDE..(y + 1) * SIDE].iter().map(|t| t.to_le_bytes())
+    /// The finest level as bytes, colours in sRGB.
+    fn bytes(texture: &Texture) -> Vec<[u8; 4]> {
+        let roots: [u8; 1024] = std::array::from_fn(|i| {
+            let [light, ..] = linear_from_color(i as u32);
+            (srgb_from_linear(light) * 255.0 + 0.5) as u8
+        });
+        let plain = |t: u32| match texture.encoding {
+            Encoding::Color => {
+                let [r, g, b] = [0, 10, 20].map(|shift| roots[(t >> shift & 1023) as usize]);
+                [r, g, b, 255]
+            }
+            Encoding::Linear => t.to_le_bytes(),
+        };
+        texture.texels[..SIDE * SIDE].iter().map(|t| plain(*t)).collect()
     }
 
     fn difference(a: [u8; 4], b: [u8; 4]) -> f64 {
@@ -302,7 +318,8 @@ mod tests {
     fn every_family_tiles_and_shows_something() {
         for (id, texture) in samples() {
             assert_eq!(texture.log2_size, LOG2_SIDE);
-            let rows: Vec<Vec<[u8; 4]>> = (0..SIDE).map(|y| row(&texture, y).collect()).collect();
+            let tones = bytes(&texture);
+            let rows: Vec<&[[u8; 4]]> = tones.chunks(SIDE).collect();
             let across = |x: usize| -> f64 {
                 (0..SIDE).map(|y| difference(rows[y][x], rows[y][(x + 1) % SIDE])).sum()
             };
@@ -315,7 +332,7 @@ mod tests {
             let (wx, wy) = (worst(&across), worst(&down));
             assert!(across(SIDE - 1) <= wx * 1.25 + 512.0, "{id}: {} {wx}", across(SIDE - 1));
             assert!(down(SIDE - 1) <= wy * 1.25 + 512.0, "{id}: {} {wy}", down(SIDE - 1));
-            let mut tones: Vec<[u8; 4]> = rows.concat();
+            let mut tones = tones;
             tones.sort_unstable();
             tones.dedup();
             assert!(tones.len() > 15, "{id} has {} tones", tones.len());
@@ -338,10 +355,7 @@ mod tests {
         for (kind, range) in [(Kind::Cloth, 120.0..250.0), (Kind::Detail, 120.0..136.0)] {
             for id in ids(kind) {
                 let texture = picture(&id);
-                let sum: f64 = texture.texels[..SIDE * SIDE]
-                    .iter()
-                    .map(|t| f64::from(t.to_le_bytes()[1]))
-                    .sum();
+                let sum: f64 = bytes(&texture).iter().map(|t| f64::from(t[1])).sum();
                 let mean = sum / (SIDE * SIDE) as f64;
                 assert!(range.contains(&mean), "{id}: {mean}");
             }

@@ -1,6 +1,6 @@
 //! Trilinear filtering of textures, eight look-ups at a time.
 //!
-//! Texels are decoded before they are mixed, so that sRGB textures are filtered in linear light.
+//! Texels are decoded before they are mixed, so that colours are filtered in linear light.
 
 use crate::engine::cpu::simd::{F32x8, I32x8};
 use crate::library::texture::{Encoding, Texture};
@@ -10,7 +10,7 @@ use crate::library::texture::{Encoding, Texture};
 pub(super) struct Sampler<'a> {
     texels: &'a [u32],
     log2_size: i32,
-    srgb: bool,
+    color: bool,
 }
 
 impl<'a> Sampler<'a> {
@@ -18,7 +18,7 @@ impl<'a> Sampler<'a> {
         Self {
             texels: &texture.texels,
             log2_size: texture.log2_size as i32,
-            srgb: texture.encoding == Encoding::Srgb,
+            color: texture.encoding == Encoding::Color,
         }
     }
 
@@ -40,7 +40,7 @@ impl<'a> Sampler<'a> {
         // Beyond the last level there is nothing to mix in.
         for share in [F32x8::ONE - between, between] {
             if share.gt(F32x8::ZERO).any() {
-                if self.srgb {
+                if self.color {
                     self.add_bilinear::<AVX2, C, true>(uv, level, share, &mut out);
                 } else {
                     self.add_bilinear::<AVX2, C, false>(uv, level, share, &mut out);
@@ -48,7 +48,7 @@ impl<'a> Sampler<'a> {
             }
             level = level + I32x8::splat(1);
         }
-        let unit = F32x8::splat(if self.srgb { SRGB_UNIT } else { 1.0 / 255.0 });
+        let unit = F32x8::splat(if self.color { COLOR_UNIT } else { 1.0 / 255.0 });
         for c in 0..C {
             out[c] = out[c] * unit;
         }
@@ -58,7 +58,7 @@ impl<'a> Sampler<'a> {
     /// Adds a share of the mean of the four texels round a point of one level, in units of the
     /// decoding.
     #[inline(always)]
-    fn add_bilinear<const AVX2: bool, const C: usize, const SRGB: bool>(
+    fn add_bilinear<const AVX2: bool, const C: usize, const COLOR: bool>(
         &self,
         uv: [F32x8<AVX2>; 2],
         level: I32x8<AVX2>,
@@ -79,8 +79,9 @@ impl<'a> Sampler<'a> {
         let texels = self.corners(log2_side, [left.round_i32(), top.round_i32()]);
         for (texels, weight) in texels.into_iter().zip(weights) {
             for c in 0..C {
-                let byte = ((texels >> (8 * c as u32)) & I32x8::splat(255)).to_f32();
-                let value = if SRGB { decode_srgb(byte) } else { byte };
+                let (bits, mask) = if COLOR { (10, 1023) } else { (8, 255) };
+                let number = ((texels >> (bits * c as u32)) & I32x8::splat(mask)).to_f32();
+                let value = if COLOR { number * number } else { number };
                 out[c] = out[c] + value * weight;
             }
         }
@@ -125,25 +126,8 @@ impl<'a> Sampler<'a> {
     }
 }
 
-/// What [`decode_srgb`] gives numbers in: the polynomial's highest coefficient, which spares a
-/// multiplication.
-const SRGB_UNIT: f32 = -0.115_389_27 / (255.0 * 255.0 * 255.0 * 255.0);
-
-/// sRGB bytes 0..255 to linear light 0..1 (IEC 61966-2-1) in [`SRGB_UNIT`], within a twentieth of
-/// a step of 255: the linear toe, and above it a polynomial fitted for the least largest error
-/// after encoding.
-#[inline(always)]
-fn decode_srgb<const AVX2: bool>(byte: F32x8<AVX2>) -> F32x8<AVX2> {
-    const TOE_END: f32 = 0.040_45 * 255.0;
-    const TOE: f32 = 1.0 / (255.0 * 12.92) / SRGB_UNIT;
-    const C0: f32 = 0.001_063_661_8 / SRGB_UNIT;
-    const C1: f32 = 0.028_079_284 / 255.0 / SRGB_UNIT;
-    const C2: f32 = 0.561_964_45 / (255.0 * 255.0) / SRGB_UNIT;
-    const C3: f32 = 0.523_844 / (255.0 * 255.0 * 255.0) / SRGB_UNIT;
-    let s = F32x8::splat;
-    let curve = (((byte + s(C3)) * byte + s(C2)) * byte + s(C1)) * byte + s(C0);
-    byte.gt(s(TOE_END)).select(curve, byte * s(TOE))
-}
+/// Linear light of a square of what a colour's channel holds.
+const COLOR_UNIT: f32 = 1.0 / (1023.0 * 1023.0);
 
 /// log2 of a pixel's size in texture coordinates, from the change of (u, v) over one pixel to the
 /// right and one pixel down: the longer of the two.
@@ -169,25 +153,17 @@ fn log2<const AVX2: bool>(v: F32x8<AVX2>) -> F32x8<AVX2> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::base::color::{linear_from_srgb, srgb_from_linear};
+    use crate::base::color::linear_from_srgb;
+    use crate::library::texture::color_from_srgb8;
 
-    /// Each level of one grey, 64 bytes brighter from level to level.
-    fn stepped(log2_size: u32, encoding: Encoding) -> Texture {
+    /// Each level of one grey, 64 steps of sRGB brighter from level to level.
+    fn stepped(log2_size: u32) -> Texture {
         let mut texels = Vec::new();
         for level in 0..=log2_size {
             let side = 1usize << (log2_size - level);
-            texels.resize(texels.len() + side * side, (64 * level) * 0x0001_0101);
+            texels.resize(texels.len() + side * side, color_from_srgb8([64 * level as u8; 3]));
         }
-        Texture { log2_size, encoding, texels }
-    }
-
-    #[test]
-    fn every_srgb_byte_is_decoded_to_a_twentieth_of_a_step() {
-        for byte in 0..256 {
-            let linear = decode_srgb(F32x8::<false>::splat(byte as f32)).0[0] * SRGB_UNIT;
-            let back = srgb_from_linear(linear) * 255.0;
-            assert!((back - byte as f32).abs() < 0.055, "{byte} becomes {back}");
-        }
+        Texture { log2_size, encoding: Encoding::Color, texels }
     }
 
     #[test]
@@ -212,7 +188,7 @@ mod tests {
 
     #[test]
     fn levels_are_mixed_in_linear_light() {
-        let texture = stepped(3, Encoding::Srgb);
+        let texture = stepped(3);
         let sampler = Sampler::new(&texture);
         let uv = [F32x8::<false>::splat(0.3), F32x8::<false>::splat(-7.6)];
         // A pixel of 1/4 of the texture: level 1; halfway to 1/2: level 1.5.
