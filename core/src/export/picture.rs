@@ -1,7 +1,7 @@
 //! Pixels -> the bytes of JPEG and PNG files. Pure functions: the same pixels give the same bytes
 //! on every machine.
 
-use jpeg_encoder::{ColorType, Encoder, SamplingFactor};
+use jpeg_encoder::{ColorType, Encoder, ImageBuffer, JpegColorType, SamplingFactor, rgb_to_ycbcr};
 use png::{BitDepth, Compression, Filter};
 
 use super::ExportError;
@@ -55,15 +55,76 @@ fn jpeg(rgb: &[u8], width: u32, height: u32, quality: u8) -> Encoded {
             .map_err(|_| failed("a JPEG has at most 65,535 pixels a side; use PNG".to_owned()))
     };
     let (w, h) = (side(width)?, side(height)?);
+    if rgb.is_empty() || rgb.len() as u64 != 3 * u64::from(width) * u64::from(height) {
+        return Err(failed(format!("{} bytes do not fill it", rgb.len())));
+    }
     let mut bytes = Vec::with_capacity(rgb.len() / 6);
     let mut encoder = Encoder::new(&mut bytes, quality);
-    encoder.set_sampling_factor(if quality >= 95 {
-        SamplingFactor::F_1_1
+    let encoded = if quality >= 95 {
+        encoder.set_sampling_factor(SamplingFactor::F_1_1);
+        encoder.encode(rgb, w, h, ColorType::Rgb)
     } else {
-        SamplingFactor::F_2_2
-    });
-    encoder.encode(rgb, w, h, ColorType::Rgb).map_err(|e| failed(e.to_string()))?;
+        encoder.set_sampling_factor(SamplingFactor::F_2_2);
+        encoder.encode_image(MeanChroma { rgb, width: w, height: h })
+    };
+    encoded.map_err(|e| failed(e.to_string()))?;
     Ok(bytes)
+}
+
+/// A picture whose chroma is the mean of two by two pixels, at the first of the four, which is
+/// the one that the encoder takes. Its own averaging divides once for each of them.
+struct MeanChroma<'a> {
+    rgb: &'a [u8],
+    width: u16,
+    height: u16,
+}
+
+impl ImageBuffer for MeanChroma<'_> {
+    fn get_jpeg_color_type(&self) -> JpegColorType {
+        JpegColorType::Ycbcr
+    }
+
+    fn width(&self) -> u16 {
+        self.width
+    }
+
+    fn height(&self) -> u16 {
+        self.height
+    }
+
+    fn fill_buffers(&self, y: u16, [luma, blue, red, _]: &mut [Vec<u8>; 4]) {
+        let stride = 3 * usize::from(self.width);
+        let row = &self.rgb[usize::from(y) * stride..][..stride];
+        luma.extend(row.as_chunks().0.iter().map(|&[r, g, b]| rgb_to_ycbcr(r, g, b).0));
+        let len = luma.len();
+        // The encoder takes every other row; the last one is repeated downwards, so that it may
+        // come in the place of a first one.
+        let last = y + 1 == self.height;
+        if y % 2 == 1 && !last {
+            blue.resize(len, 0);
+            red.resize(len, 0);
+            return;
+        }
+        let below = if last { row } else { &self.rgb[(usize::from(y) + 1) * stride..][..stride] };
+        let mut add = |sum: [u32; 3]| {
+            let [r, g, b] = sum.map(|sum| ((sum + 2) / 4) as u8);
+            let (_, cb, cr) = rgb_to_ycbcr(r, g, b);
+            blue.extend([cb, cb]);
+            red.extend([cr, cr]);
+        };
+        let (pairs, rest) = row.as_chunks::<6>();
+        let (pairs_below, rest_below) = below.as_chunks::<6>();
+        for (a, b) in pairs.iter().zip(pairs_below) {
+            add(std::array::from_fn(|c| {
+                [a[c], a[c + 3], b[c], b[c + 3]].map(u32::from).iter().sum()
+            }));
+        }
+        if let (&[r, g, b], &[r2, g2, b2]) = (rest, rest_below) {
+            add([(r, r2), (g, g2), (b, b2)].map(|(a, b)| 2 * (u32::from(a) + u32::from(b))));
+        }
+        blue.truncate(len);
+        red.truncate(len);
+    }
 }
 
 /// A lossless 8-bit picture. `rgb` is `width * height * 3` long.
@@ -170,6 +231,21 @@ mod tests {
                 let got = psnr(&back.into_raw(), &rgb);
                 assert!(got > floor, "{w} x {h} at quality {quality}: {got:.1} dB");
             }
+        }
+    }
+
+    #[test]
+    fn fine_patterns_keep_their_mean_colour() {
+        // Columns of red and blue: the first of each four would make all of it red.
+        let rgb: Vec<u8> = [200, 30, 30, 30, 30, 200].repeat(16 * 33);
+        let bytes = PictureFormat::Jpeg(90).encode(&rgb, 32, 33).unwrap();
+        let back = decoded(&bytes, image::ImageFormat::Jpeg).into_rgb8().into_raw();
+        for c in 0..3 {
+            let mean = |data: &[u8]| {
+                data.iter().skip(c).step_by(3).map(|v| f64::from(*v)).sum::<f64>() / (32.0 * 33.0)
+            };
+            let (got, wanted) = (mean(&back), mean(&rgb));
+            assert!((got - wanted).abs() < 3.0, "{c}: {got} {wanted}");
         }
     }
 
