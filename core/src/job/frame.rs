@@ -135,9 +135,11 @@ impl FrameMaker for Studio {
     fn make(&mut self, frame: u32) -> Result<RenderedFrame, FrameError> {
         let mut times = StageTimes::default();
         let scene = times.measure("sample", || self.sampler.scene(frame));
-        let (drawn, rendered) = self.render_scene(&scene, &mut times)?;
+        let (drawn, mut rendered) = self.render_scene(&scene, &mut times)?;
         let annotations =
             times.measure("label", || label::annotate(&scene, &drawn, &rendered, &self.outputs));
-        Ok(RenderedFrame { scene, picture: rendered.picture, annotations, times })
+        let picture = rendered.picture.take();
+        self.engine.recycle(rendered);
+        Ok(RenderedFrame { scene, picture, annotations, times })
     }
 }

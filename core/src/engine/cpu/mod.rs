@@ -87,6 +87,8 @@ struct Buffers {
     sun_screen: Vec<ScreenVertex>,
     shadow_map: ShadowMap,
     scratches: Mutex<Vec<Scratch>>,
+    /// An earlier frame, for its memory.
+    spare: Frame,
 }
 
 impl CpuEngine {
@@ -128,6 +130,10 @@ impl Engine for CpuEngine {
             Some(pool) => pool.install(|| buffers.render(level, list, plan, times)),
             None => buffers.render(level, list, plan, times),
         }
+    }
+
+    fn recycle(&mut self, frame: Frame) {
+        self.buffers.spare = frame;
     }
 }
 
@@ -265,9 +271,10 @@ impl Buffers {
         let pixels = frame.width as usize * frame.height as usize;
         let shades = plan.runs(Pass::Display);
         let (resolves, reduces) = (plan.runs(Pass::Resolve), plan.runs(Pass::Reduce));
-        frame.picture = shades.then(|| vec![0; pixels * 3]);
-        frame.object_ids = resolves.then(|| vec![0; pixels]);
-        frame.depth_m = resolves.then(|| vec![0.0; pixels]);
+        let spare = std::mem::take(&mut self.spare);
+        frame.picture = shades.then(|| resized(spare.picture, pixels * 3));
+        frame.object_ids = resolves.then(|| resized(spare.object_ids, pixels));
+        frame.depth_m = resolves.then(|| resized(spare.depth_m, pixels));
         let (map, casting) = (&self.shadow_map, &self.casting);
         let raster_time = shadow.map(|_| || map.raster_time());
         let shadow = shadow.map(|view| SunShadow { map, view, casting, level });
@@ -306,6 +313,14 @@ impl Buffers {
         });
         self.scratches.lock().unwrap_or_else(PoisonError::into_inner).extend(used);
     }
+}
+
+/// A buffer of a length, in the memory of an earlier one where there was one. What it holds is left
+/// as it is: the tiles write every pixel.
+fn resized<T: Clone + Default>(earlier: Option<Vec<T>>, len: usize) -> Vec<T> {
+    let mut buffer = earlier.unwrap_or_default();
+    buffer.resize(len, T::default());
+    buffer
 }
 
 /// Projects the vertices of the wanted objects; the others' places keep what they held.
