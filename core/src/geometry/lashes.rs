@@ -32,6 +32,7 @@ pub(super) fn add(
 ) -> Range<u32> {
     let start = mesh.triangles.len() as u32;
     let middle = eyes.iter().sum::<Vec3>() / eyes.len().max(1) as f32;
+    let round_eyes = round_eyes(figure, skin.positions.len());
     for side in [1.0, -1.0] {
         let ball: Vec<Vec3> =
             eyes.iter().copied().filter(|p| (p.x - middle.x) * side > 0.0).collect();
@@ -41,14 +42,25 @@ pub(super) fn add(
         let center = ball.iter().sum::<Vec3>() / ball.len() as f32;
         let radius = ball.iter().map(|p| (*p - center).length()).sum::<f32>() / ball.len() as f32;
         let roots: Vec<usize> =
-            ALONG_M.iter().filter_map(|x| edge_vertex(figure, skin, side * x)).collect();
+            ALONG_M.iter().filter_map(|x| edge_vertex(figure, &round_eyes, side * x)).collect();
         row(mesh, skin, &roots, (center, side, radius / EYE_M));
     }
     start..mesh.triangles.len() as u32
 }
 
+/// The vertices about the eyes, among the first `count` of the skin's.
+fn round_eyes(figure: &Figure, count: usize) -> Vec<usize> {
+    let t = figure.template();
+    let first = figure.group(GroupId::Skin).first as usize;
+    let near = |v: &usize| {
+        let (x, y) = (t.x[first + v].abs(), t.y[first + v]);
+        (0.70..0.77).contains(&y) && (0.02..0.05).contains(&x)
+    };
+    (0..count).filter(near).collect()
+}
+
 /// The vertex in front on the edge of the upper lid, at a place to the figure's left or right.
-fn edge_vertex(figure: &Figure, skin: &Surface<'_>, x: f32) -> Option<usize> {
+fn edge_vertex(figure: &Figure, near: &[usize], x: f32) -> Option<usize> {
     const REACH_M: [f32; 2] = [0.0012, 0.0009];
     let t = figure.template();
     let first = figure.group(GroupId::Skin).first as usize;
@@ -57,7 +69,7 @@ fn edge_vertex(figure: &Figure, skin: &Surface<'_>, x: f32) -> Option<usize> {
         let (dx, dy) = (t.x[first + v] - x, t.y[first + v] - edge_y);
         dx.abs() < REACH_M[0] && dy.abs() < REACH_M[1]
     };
-    let all = (0..skin.positions.len()).filter(on_edge);
+    let all = near.iter().copied().filter(on_edge);
     all.max_by(|a, b| t.z[first + a].total_cmp(&t.z[first + b]))
 }
 

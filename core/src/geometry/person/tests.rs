@@ -215,10 +215,10 @@ fn no_skin_shows_through_the_clothes() {
             let on_skin = garment::places(&figure, GroupId::Skin, skin.positions.len() as u32);
             let hidden = garment::hidden(&figure, cuts, &on_skin, lod);
             garment::tuck(&figure, cuts, &on_skin, lod, &mut skin.positions, &skin.normals);
-            let mut layers = vec![
-                (Piece::Top, triangles_of(body, &worn.top)),
-                (Piece::Socks, triangles_of(body, &worn.feet.socks)),
-            ];
+            let mut layers = vec![(Piece::Top, triangles_of(body, &worn.top))];
+            if cuts.wears(Piece::Socks) {
+                layers.push((Piece::Socks, triangles_of(body, &worn.feet.socks)));
+            }
             if cuts.shoes != ShoeKind::Sandals {
                 layers.push((Piece::Shoes, triangles_of(body, &worn.feet.shoes)));
             }

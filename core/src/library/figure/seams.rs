@@ -5,6 +5,7 @@
 //! for everybody, by [`super::maps`].
 
 use super::complexion::step;
+use super::creases::ARM_M;
 
 /// Kinds of garments that are sewn alike.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -48,8 +49,6 @@ pub(super) struct Place {
     pub leg: f32,
 }
 
-/// Length of the template's arm, metres.
-const ARM_M: f32 = 0.42;
 /// Distances of buttons below one another, and where the first sits.
 const BUTTON_M: f32 = 0.072;
 const FIRST_BUTTON_Y: f32 = 0.508;
