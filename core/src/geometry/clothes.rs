@@ -289,21 +289,13 @@ impl Cutter<'_> {
     }
 
     /// The finest level follows the curve of a hem inside the shell's triangles.
-    fn cut(
-        &self,
-        builder: &mut Builder,
-        piece: Piece,
-        layer: &[Vec3],
-        rim: Option<Rim>,
-    ) -> Added {
+    fn cut(&self, builder: &mut Builder, piece: Piece, layer: &[Vec3], rim: Option<Rim>) -> Added {
         let shell = self.shell;
         let field = self.fields(piece);
         let normals = normals_within(layer, shell.net, &field);
         let mut part = Refined::new(&self.body.with(layer, &normals), &field);
         if self.lod == 0 {
-            part.refine(|a, b| {
-                self.field(piece, Place::between(shell.places[a], shell.places[b]))
-            });
+            part.refine(|a, b| self.field(piece, Place::between(shell.places[a], shell.places[b])));
         }
         Added { triangles: builder.add_cut(&part.surface(), part.field(), rim), normals }
     }

@@ -10,7 +10,7 @@ use glam::Vec3;
 
 use super::lookup::{Lookup, edge};
 use crate::library::figure::Net;
-use crate::library::mesh::{Mesh, SkinVertex};
+use crate::library::mesh::{Mesh, SkinVertex, Triangle};
 
 /// A surface to be cut: vertices of a group's prefix and triangles of its render vertices.
 pub(super) struct Surface<'a> {
@@ -117,10 +117,7 @@ impl Refined {
 
     /// New vertices in the middle of all edges of crossed triangles, by edge; and which old
     /// vertices have such an edge.
-    fn split_crossed(
-        &mut self,
-        between: impl Fn(usize, usize) -> f32,
-    ) -> (Lookup<u16>, Vec<bool>) {
+    fn split_crossed(&mut self, between: impl Fn(usize, usize) -> f32) -> (Lookup<u16>, Vec<bool>) {
         let mut vertices = Lookup::new();
         let mut touched = vec![false; self.positions.len()];
         for i in 0..self.triangles.len() / 3 {
@@ -272,11 +269,8 @@ impl Builder {
     }
 
     fn push(&mut self, p: Vec3, n: Vec3, uv: [f32; 2], s: SkinVertex) -> u32 {
-        self.mesh.positions.push(p.to_array());
-        self.mesh.normals.push(n.to_array());
-        self.mesh.uvs.push(uv);
         self.mesh.skin.push(s);
-        self.mesh.positions.len() as u32 - 1
+        self.mesh.push(p.to_array(), n.to_array(), uv)
     }
 
     fn keep(&mut self, s: &Surface<'_>, r: u16) -> u32 {
@@ -314,7 +308,7 @@ impl Builder {
             let corners = [t[0], t[1], t[2]].map(|r| usize::from(s.render[usize::from(r)]));
             if keep([t[0], t[1], t[2]], corners) {
                 let tri = [t[0], t[1], t[2]].map(|r| self.keep(s, r));
-                self.mesh.triangles.push(tri);
+                self.mesh.triangles.push(Triangle::new(tri));
             }
         }
         first..self.mesh.triangles.len() as u32
@@ -333,7 +327,7 @@ impl Builder {
                 0 => {}
                 3 => {
                     let tri = r.map(|r| self.keep(s, r));
-                    self.mesh.triangles.push(tri);
+                    self.mesh.triangles.push(Triangle::new(tri));
                 }
                 kept => {
                     // The odd corner comes first; the order round the triangle is kept.
@@ -344,14 +338,14 @@ impl Builder {
                     let q = self.cut(s, &mut cuts, (a, fa), (c, fc));
                     if kept == 1 {
                         let a = self.keep(s, a);
-                        self.mesh.triangles.push([a, p, q]);
+                        self.mesh.triangles.push(Triangle::new([a, p, q]));
                         hems.push([
                             (p, geometry_key(s, t, odd, 1)),
                             (q, geometry_key(s, t, odd, 2)),
                         ]);
                     } else {
                         let (b, c) = (self.keep(s, b), self.keep(s, c));
-                        self.mesh.triangles.extend([[b, c, p], [c, q, p]]);
+                        self.mesh.triangles.extend([[b, c, p], [c, q, p]].map(Triangle::new));
                         hems.push([
                             (q, geometry_key(s, t, odd, 2)),
                             (p, geometry_key(s, t, odd, 1)),
@@ -395,7 +389,7 @@ impl Builder {
     /// Strips along the hems' edges, each running with the cloth on its left seen from outside.
     fn add_rim(&mut self, hems: &[[(u32, u32); 2]], rim: Rim) {
         let at = |m: &Mesh, v: u32| Vec3::from_array(m.positions[v as usize]);
-        let normal = |m: &Mesh, v: u32| Vec3::from_array(m.normals[v as usize]);
+        let normal = |m: &Mesh, v: u32| Vec3::from_array(m.normals[v as usize].unit());
         // Directions out of the cloth, summed over the edges that meet in a point of the hem (by
         // the shell's vertices, so that texture seams do not part them).
         let mut out = Lookup::<Vec3>::new();
@@ -424,9 +418,9 @@ impl Builder {
                 ring
             });
             if rim.round {
-                self.mesh.triangles.extend([[p, a[0], b[0]], [p, b[0], q]]);
+                self.mesh.triangles.extend([[p, a[0], b[0]], [p, b[0], q]].map(Triangle::new));
             }
-            self.mesh.triangles.extend([[a[0], a[1], b[1]], [a[0], b[1], b[0]]]);
+            self.mesh.triangles.extend([[a[0], a[1], b[1]], [a[0], b[1], b[0]]].map(Triangle::new));
         }
     }
 }
@@ -511,7 +505,7 @@ mod tests {
         m.triangles
             .iter()
             .map(|t| {
-                let [a, b, c] = t.map(|v| Vec3::from_array(m.positions[v as usize]));
+                let [a, b, c] = t.get().map(|v| Vec3::from_array(m.positions[v as usize]));
                 (b - a).cross(c - a).z * 0.5
             })
             .sum()
@@ -591,7 +585,7 @@ mod tests {
         assert!((deepest + 0.1).abs() < 1e-5, "{deepest}");
         // Seen from outside the opening the rim's faces are front faces.
         for t in &m.triangles {
-            let [a, b, c] = t.map(|v| Vec3::from_array(m.positions[v as usize]));
+            let [a, b, c] = t.get().map(|v| Vec3::from_array(m.positions[v as usize]));
             let n = (b - a).cross(c - a);
             assert!(n.z > 0.0 || n.x > 0.0, "{n}");
         }

@@ -10,7 +10,7 @@ use glam::Vec3;
 use super::cut::{Surface, mix_skin};
 use super::hair::strand::push;
 use crate::library::figure::{Figure, GroupId, upper_lid_y};
-use crate::library::mesh::Mesh;
+use crate::library::mesh::{Mesh, Triangle};
 
 /// Places along the lid's edge at which vertices are looked for: distance from the middle of the
 /// face on the template, metres.
@@ -100,7 +100,7 @@ fn row(
         let tip = p + ahead * length + Vec3::Y * (0.12 * length);
         let [left, right, tip] =
             [p - across, p + across, tip].map(|q| push(mesh, q, off, [0.0; 2], joints));
-        mesh.triangles.push([left, right, tip]);
+        mesh.triangles.push(Triangle::new([left, right, tip]));
     }
 }
 
@@ -127,11 +127,11 @@ mod tests {
             let at = |v: u32| Vec3::from_array(mesh.positions[v as usize]);
             let front = eyes.positions.iter().map(|p| p.z).fold(f32::MIN, f32::max);
             let middle = eyes.positions.iter().sum::<Vec3>().y / eyes.positions.len() as f32;
-            for (i, [left, _, tip]) in mesh.triangles.iter().enumerate() {
-                let (root, tip) = (at(*left), at(*tip));
+            for (i, [left, _, tip]) in mesh.triangles.iter().map(|t| t.get()).enumerate() {
+                let (root, tip) = (at(left), at(tip));
                 assert!(tip.y > root.y && root.y > middle - 0.001, "{i} {root} {tip}");
                 assert!(tip.z > root.z - 0.002 && root.z > front - 0.010, "{i} {root} {tip}");
-                let other = at(mesh.triangles[(i + each) % (2 * each)][2]);
+                let other = at(mesh.triangles[(i + each) % (2 * each)].get()[2]);
                 assert!((tip * Vec3::new(-1.0, 1.0, 1.0) - other).length() < 1e-4, "{i}");
             }
         }

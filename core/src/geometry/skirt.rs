@@ -337,7 +337,8 @@ impl Cloud {
             }
         }
         let place = |i: usize| block[i] as usize * LANES + i;
-        let order = |a: &usize, b: &usize| best[*a].total_cmp(&best[*b]).then(place(*a).cmp(&place(*b)));
+        let order =
+            |a: &usize, b: &usize| best[*a].total_cmp(&best[*b]).then(place(*a).cmp(&place(*b)));
         (0..LANES).min_by(order).and_then(|i| self.which.get(place(i)).copied())
     }
 }

@@ -32,7 +32,7 @@ use super::body::RestBody;
 use super::garment::step;
 use crate::base::hash::Hasher;
 use crate::library::figure::Figure;
-use crate::library::mesh::{Mesh, SkinVertex};
+use crate::library::mesh::{Mesh, SkinVertex, Triangle};
 use crate::scene::{HairStyle, HeadwearKind, Person};
 
 /// Locks by level of detail: share of the finest count, width, and share of the points.
@@ -223,7 +223,7 @@ impl Grower<'_> {
             // The bald crown lies under the skin.
             let local = |v: u32| self.head.scalp.frame.local(points[v as usize - first]);
             let tail = mesh.triangles.split_off(start);
-            let grows = |t: &[u32; 3]| t.iter().any(|&v| style::wreath(local(v)) > 0.0);
+            let grows = |t: &Triangle| t.get().iter().any(|&v| style::wreath(local(v)) > 0.0);
             mesh.triangles.extend(tail.into_iter().filter(grows));
         }
     }
@@ -451,9 +451,9 @@ pub(super) fn add_grid(
             let v = |r: usize, c: usize| first + (r * across + c) as u32;
             let [a, b] = [v(row - 1, column - 1), v(row - 1, column)];
             let [d, c] = [v(row, column - 1), v(row, column)];
-            mesh.triangles.push([a, d, c]);
+            mesh.triangles.push(Triangle::new([a, d, c]));
             if points[(row - 1) * across + column - 1] != points[(row - 1) * across + column] {
-                mesh.triangles.push([a, c, b]);
+                mesh.triangles.push(Triangle::new([a, c, b]));
             }
         }
     }

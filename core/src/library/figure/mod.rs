@@ -20,8 +20,8 @@ mod tallness;
 mod whiskers;
 
 pub use complexion::upper_lid_y;
-pub use data::{FigureData, Group, GroupId, LOD_COUNT, Lod};
 pub use creases::{ARM_M, LEG_M};
+pub use data::{FigureData, Group, GroupId, LOD_COUNT, Lod};
 use data::{GROUP_COUNT, KEYPOINT_VERTICES, MAX_FACTORS};
 pub use maps::{CLOTH_REPEAT, Freckles, NEUTRAL_TINT, SKIRT};
 pub use net::{Neighbour, Net};
