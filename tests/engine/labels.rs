@@ -1,6 +1,7 @@
 //! Ids, distances and counts against the oracle and closed forms.
 
 use figurant_core::draw::DrawList;
+use figurant_core::library::mesh::Triangle;
 use figurant_core::plan::{Frame, ObjectSamples};
 use figurant_tests::drawlists::{self, add, empty, mixed, view};
 use figurant_tests::meshes::{self, Dice};
@@ -192,7 +193,7 @@ fn neighbours_share_every_sample_exactly_once() {
             mesh.positions = vec![place(a), place(b), place(corner(side))];
             mesh.normals.truncate(3);
             mesh.uvs.truncate(3);
-            mesh.triangles = vec![[0, 1, 2]];
+            mesh.triangles = vec![Triangle::new([0, 1, 2])];
             add(&mut list, mesh, DAffine3::IDENTITY, plain([0.5; 3]));
             list.draws.last_mut().unwrap().double_sided = true;
         }
@@ -208,7 +209,7 @@ fn neighbours_share_every_sample_exactly_once() {
         mesh.positions.extend(&second.positions);
         mesh.normals.extend(&second.normals);
         mesh.uvs.extend(&second.uvs);
-        mesh.triangles.push([3, 4, 5]);
+        mesh.triangles.push(Triangle::new([3, 4, 5]));
         whole.objects[0].mesh = Arc::new(mesh);
         whole.draws.truncate(1);
         whole.draws[0].triangles = 0..2;

@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use figurant_core::draw::DrawList;
 use figurant_core::draw::abi::{Material, PointLight, Sun};
-use figurant_core::library::mesh::{Mesh, SkinVertex};
+use figurant_core::library::mesh::{Mesh, Normal, SkinVertex};
 use figurant_core::library::texture::{Encoding, Texture, colors_from_srgb};
 use glam::{DAffine3, DQuat, DVec3};
 
@@ -62,7 +62,7 @@ fn skin(height: f64, right: bool) -> SkinVertex {
 fn normals_from_triangles(mesh: &mut Mesh, columns: usize) {
     let at = |i: u32| DVec3::from_array(mesh.positions[i as usize].map(f64::from));
     let mut sums = vec![DVec3::ZERO; mesh.positions.len()];
-    for t in &mesh.triangles {
+    for t in mesh.triangles.iter().map(|t| t.get()) {
         let normal = (at(t[1]) - at(t[0])).cross(at(t[2]) - at(t[0]));
         t.iter().for_each(|v| sums[*v as usize] += normal);
     }
@@ -70,7 +70,8 @@ fn normals_from_triangles(mesh: &mut Mesh, columns: usize) {
         let seam = row[0] + row[columns - 1];
         (row[0], row[columns - 1]) = (seam, seam);
     }
-    mesh.normals = sums.iter().map(|n| n.normalize_or(DVec3::Y).as_vec3().to_array()).collect();
+    let unit = |n: &DVec3| Normal::new(n.normalize_or(DVec3::Y).as_vec3().to_array());
+    mesh.normals = sums.iter().map(unit).collect();
 }
 
 /// A texture of 512x512 texels with its mip levels.

@@ -2,7 +2,7 @@
 
 use std::f64::consts::{PI, TAU};
 
-use figurant_core::library::mesh::{Mesh, SkinVertex};
+use figurant_core::library::mesh::{Mesh, SkinVertex, Triangle};
 use glam::DVec3;
 
 /// Numbers that look random and are the same in every run (a linear congruential generator).
@@ -53,17 +53,16 @@ fn surface(
     for row in 0..=rows {
         for column in 0..=columns {
             let (u, v) = (column as f64 / columns as f64, row as f64 / rows as f64);
-            mesh.positions.push(p(u, v).as_vec3().to_array());
-            mesh.normals.push(n(u, v).normalize().as_vec3().to_array());
-            mesh.uvs.push([u as f32, v as f32]);
+            let (p, n) = (p(u, v).as_vec3(), n(u, v).normalize().as_vec3());
+            mesh.push(p.to_array(), n.to_array(), [u as f32, v as f32]);
         }
     }
     let w = columns as u32 + 1;
     for row in 0..rows as u32 {
         for column in 0..columns as u32 {
             let a = row * w + column;
-            mesh.triangles.push([a, a + w, a + 1]);
-            mesh.triangles.push([a + 1, a + w, a + w + 1]);
+            mesh.triangles.push(Triangle::new([a, a + w, a + 1]));
+            mesh.triangles.push(Triangle::new([a + 1, a + w, a + w + 1]));
         }
     }
     mesh
@@ -110,12 +109,12 @@ pub fn cuboid() -> Mesh {
         let right = up.cross(n);
         let first = mesh.positions.len() as u32;
         for (x, y) in [(-1.0, 1.0), (-1.0, -1.0), (1.0, -1.0), (1.0, 1.0)] {
-            mesh.positions.push((n + right * x + up * y).as_vec3().to_array());
-            mesh.normals.push(n.as_vec3().to_array());
-            mesh.uvs.push([(x * 0.5 + 0.5) as f32, (0.5 - y * 0.5) as f32]);
+            let p = (n + right * x + up * y).as_vec3();
+            let uv = [(x * 0.5 + 0.5) as f32, (0.5 - y * 0.5) as f32];
+            mesh.push(p.to_array(), n.as_vec3().to_array(), uv);
         }
-        mesh.triangles.push([first, first + 1, first + 2]);
-        mesh.triangles.push([first, first + 2, first + 3]);
+        mesh.triangles.push(Triangle::new([first, first + 1, first + 2]));
+        mesh.triangles.push(Triangle::new([first, first + 2, first + 3]));
     }
     mesh
 }
@@ -127,11 +126,11 @@ pub fn soup(dice: &mut Dice, count: usize, size: f64) -> Mesh {
         let center = dice.vector();
         let first = mesh.positions.len() as u32;
         for _ in 0..3 {
-            mesh.positions.push((center + dice.vector() * size).as_vec3().to_array());
-            mesh.normals.push(dice.direction().as_vec3().to_array());
-            mesh.uvs.push([dice.unit() as f32, dice.unit() as f32]);
+            let p = (center + dice.vector() * size).as_vec3().to_array();
+            let n = dice.direction().as_vec3().to_array();
+            mesh.push(p, n, [dice.unit() as f32, dice.unit() as f32]);
         }
-        mesh.triangles.push([first, first + 1, first + 2]);
+        mesh.triangles.push(Triangle::new([first, first + 1, first + 2]));
     }
     mesh
 }

@@ -79,7 +79,7 @@ fn transform(rows: &[[f32; 4]; 3]) -> (DMat3, DVec3) {
 /// Position and normal of a vertex in view space.
 fn place(list: &DrawList, object: &DrawObject, vertex: usize) -> (DVec3, DVec3) {
     let mesh = &object.mesh;
-    let (p, n) = (point(mesh.positions[vertex]), point(mesh.normals[vertex]));
+    let (p, n) = (point(mesh.positions[vertex]), point(mesh.normals[vertex].unit()));
     if mesh.skin.is_empty() {
         let (linear, translation) = transform(&object.view_from_model);
         return (linear * p + translation, (linear.inverse().transpose() * n).normalize());
@@ -104,7 +104,7 @@ impl Oracle {
                 continue;
             }
             for t in draw.triangles.clone() {
-                let corners = object.mesh.triangles[t as usize].map(|v| v as usize);
+                let corners = object.mesh.triangles[t as usize].get().map(|v| v as usize);
                 let placed = corners.map(|v| place(list, object, v));
                 let mirrored = object.mesh.skin.is_empty()
                     && transform(&object.view_from_model).0.determinant() < 0.0;

@@ -16,7 +16,7 @@ use figurant_core::draw::abi::{Draw, DrawObject, Material, View};
 use figurant_core::engine::Engine;
 use figurant_core::geometry::person::{Dressed, PartKind};
 use figurant_core::geometry::skeleton::JOINT_NAMES;
-use figurant_core::library::mesh::Mesh;
+use figurant_core::library::mesh::{Mesh, Triangle};
 use figurant_core::plan::{Frame, Output, Outputs, PassPlan, SceneFacts, StageTimes};
 use figurant_core::scene::{BottomKind, OuterKind, Outfit, TopKind};
 use glam::Vec3;
@@ -244,7 +244,7 @@ impl Sorted {
     pub fn new(dressed: &Dressed, outfit: &Outfit) -> Self {
         let mesh = &dressed.mesh;
         let corner = |t: u32| {
-            mesh.triangles[t as usize].map(|v| Vec3::from_array(mesh.positions[v as usize]))
+            mesh.triangles[t as usize].get().map(|v| Vec3::from_array(mesh.positions[v as usize]))
         };
         let of_layer = |layer: Layer| {
             let parts = dressed.parts.iter().filter(move |p| Layer::of(p.kind) == Some(layer));
@@ -386,7 +386,7 @@ impl Sorted {
 /// The limb that moves a triangle most.
 fn limb_of(mesh: &Mesh, t: u32, limbs: &[Limb]) -> Limb {
     let mut sums = [0u32; 5];
-    for v in mesh.triangles[t as usize] {
+    for v in mesh.triangles[t as usize].get() {
         let skin = &mesh.skin[v as usize];
         for (&joint, &weight) in skin.joints.iter().zip(&skin.weights) {
             // Beyond the skeleton's joints there are those of skirts.
@@ -400,7 +400,8 @@ fn limb_of(mesh: &Mesh, t: u32, limbs: &[Limb]) -> Limb {
 
 /// Whether a triangle belongs to the thickness of a hem, which has no inner or outer side.
 fn is_edge(mesh: &Mesh, t: u32) -> bool {
-    let [a, b, c] = mesh.triangles[t as usize].map(|v| Vec3::from_array(mesh.normals[v as usize]));
+    let [a, b, c] =
+        mesh.triangles[t as usize].get().map(|v| Vec3::from_array(mesh.normals[v as usize].unit()));
     a.dot(b).min(b.dot(c)).min(c.dot(a)) < EDGE_COS
 }
 
@@ -409,7 +410,7 @@ fn piece(mesh: &Mesh, triangles: impl Iterator<Item = u32>) -> Mesh {
     let mut own: HashMap<u32, u32> = HashMap::new();
     let mut out = Mesh { center: mesh.center, radius_m: mesh.radius_m, ..Mesh::default() };
     for t in triangles {
-        let corners = mesh.triangles[t as usize].map(|v| {
+        let corners = mesh.triangles[t as usize].get().map(|v| {
             *own.entry(v).or_insert_with(|| {
                 let i = v as usize;
                 out.positions.push(mesh.positions[i]);
@@ -419,7 +420,7 @@ fn piece(mesh: &Mesh, triangles: impl Iterator<Item = u32>) -> Mesh {
                 out.positions.len() as u32 - 1
             })
         });
-        out.triangles.push(corners);
+        out.triangles.push(Triangle::new(corners));
     }
     out
 }

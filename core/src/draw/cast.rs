@@ -13,7 +13,7 @@ use crate::library::mesh::Mesh;
 use crate::scene::{Person, ShoeKind};
 
 /// Some 100 people at the levels of detail that they are mostly seen at.
-const MESHES_BYTES: usize = 256 << 20;
+const MESHES_BYTES: usize = 192 << 20;
 /// Some 1,500 people.
 const BODIES_BYTES: usize = 32 << 20;
 

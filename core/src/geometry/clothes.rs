@@ -3,11 +3,13 @@
 //! Layers come from [`super::layers`] and [`super::skirt`], edges from [`super::garment`]; here
 //! they are cut and collected. Colours are not known here.
 
+use std::ops::Range;
+
 use glam::Vec3;
 
 use super::body::{RestBody, SOLE_M};
-use super::cut::{Builder, Refined, Rim, Surface};
-use super::garment::{self, Cuts, DEEP_M, Piece, Place, step};
+use super::cut::{Builder, Refined, Rim, normals_within};
+use super::garment::{self, Cuts, DEEP_M, Fields, NOT_WORN, Piece, Place, step};
 use super::layers::{self, Shell, raised};
 use super::person::{Evaluated, PartKind, Parts};
 use super::skirt::{self, Level, Skirt};
@@ -37,9 +39,11 @@ pub(super) struct Worn {
 impl Worn {
     /// Lays one garment over the other, from the skin outwards.
     pub fn new(shell: &Shell<'_>, cuts: &Cuts) -> Self {
-        let feet = layers::footwear(shell);
-        let bottom = cuts.wears(Piece::Bottom).then(|| layers::bottom(shell, cuts, &feet.shoes));
-        let tucked_top = cuts.tucked().then(|| layers::top(shell, cuts, None, &[]));
+        let fields = Fields::new(cuts, &shell.places);
+        let cut = (cuts, &fields);
+        let feet = layers::footwear(shell, cuts);
+        let bottom = cuts.wears(Piece::Bottom).then(|| layers::bottom(shell, cut, &feet.shoes));
+        let tucked_top = cuts.tucked().then(|| layers::top(shell, cut, None, &[]));
         let skirt = cuts.skirt_y().and_then(|top_y| {
             let cut = skirt::Cut {
                 top_y,
@@ -49,17 +53,17 @@ impl Worn {
                 gap_m: None,
             };
             let under = |i: usize| match &tucked_top {
-                Some(t) if cuts.field(Piece::Top, shell.places[i]) > -0.01 => t[i],
-                _ if cuts.field(Piece::Shoes, shell.places[i]) > -0.02 => feet.shoes[i],
+                Some(t) if fields.top[i] > -0.01 => t[i],
+                _ if fields.shoes[i] > -0.02 => feet.shoes[i],
                 _ => shell.positions[i],
             };
             Skirt::new(shell, &cut, &(0..shell.positions.len()).map(under).collect::<Vec<_>>())
         });
         let over = skirt.as_ref().map_or(&[][..], |s| &s.positions);
-        let top = tucked_top.unwrap_or_else(|| layers::top(shell, cuts, bottom.as_deref(), over));
+        let top = tucked_top.unwrap_or_else(|| layers::top(shell, cut, bottom.as_deref(), over));
         let outer = cuts
             .wears(Piece::Outer)
-            .then(|| layers::outer(shell, cuts, bottom.as_deref(), &top, over));
+            .then(|| layers::outer(shell, cut, bottom.as_deref(), &top, over));
         let coat = outer.as_ref().zip(cuts.coat()).and_then(|(outer, (top_y, leg_end))| {
             let cut = skirt::Cut {
                 top_y,
@@ -134,7 +138,7 @@ pub(super) fn add(out: &mut Parts, figure: &Figure, rest: &RestBody, cuts: &Cuts
 
 fn add_bottom(out: &mut Parts, cutter: &Cutter<'_>, worn: &Worn) {
     if let Some(bottom) = &worn.bottom {
-        let range = cutter.cut(&mut out.builder, Piece::Bottom, bottom, cutter.rim());
+        let range = cutter.cut(&mut out.builder, Piece::Bottom, bottom, cutter.rim()).triangles;
         out.add(PartKind::Bottom, range, true);
     }
     if let Some(skirt) = worn.skirt.as_ref().filter(|_| !cutter.cuts.bottom.is_dress()) {
@@ -146,13 +150,12 @@ fn add_bottom(out: &mut Parts, cutter: &Cutter<'_>, worn: &Worn) {
 fn add_top(out: &mut Parts, cutter: &Cutter<'_>, worn: &Worn) {
     let start = out.builder.mesh.triangles.len() as u32;
     let builder = &mut out.builder;
-    cutter.cut(builder, Piece::Top, &worn.top, cutter.rim());
+    let normals = cutter.cut(builder, Piece::Top, &worn.top, cutter.rim()).normals;
     let (shell, cuts) = (cutter.shell, cutter.cuts);
     if let Some(skirt) = worn.skirt.as_ref().filter(|_| cuts.bottom.is_dress()) {
         skirt.add(builder, cutter.rim());
     }
     if cutter.lod < 4 {
-        let normals = layers::normals_of(shell, &worn.top);
         let sewn: [(Piece, Rise<'_>); 4] = [
             (Piece::Placket, &|_| [SEWN_M, 0.0]),
             (Piece::Pocket, &|at| {
@@ -190,12 +193,11 @@ fn hood_rise(cuts: &Cuts, at: Place) -> f32 {
 
 fn add_outer(out: &mut Parts, cutter: &Cutter<'_>, worn: &Worn, outer: &[Vec3]) {
     let start = out.builder.mesh.triangles.len() as u32;
-    cutter.cut(&mut out.builder, Piece::Outer, outer, cutter.rim());
+    let normals = cutter.cut(&mut out.builder, Piece::Outer, outer, cutter.rim()).normals;
     if let Some(coat) = &worn.coat {
         coat.add(&mut out.builder, cutter.rim());
     }
     if cutter.lod < 4 {
-        let normals = layers::normals_of(cutter.shell, outer);
         let layer = raised(outer, &normals, &cutter.shell.places, |at| {
             let [off, up] = collar_rise(cutter.cuts.outer_neck(at.p));
             [off + 0.002, up]
@@ -209,7 +211,7 @@ fn add_feet(out: &mut Parts, cutter: &Cutter<'_>, worn: &Worn) {
     let (cuts, shell) = (cutter.cuts, cutter.shell);
     if cuts.wears(Piece::Socks) {
         let rim = cutter.rim().map(|rim| Rim { thickness_m: 0.0018, ..rim });
-        let range = cutter.cut(&mut out.builder, Piece::Socks, &worn.feet.socks, rim);
+        let range = cutter.cut(&mut out.builder, Piece::Socks, &worn.feet.socks, rim).triangles;
         out.add(PartKind::Socks, range, true);
     }
     if !cuts.wears(Piece::Shoes) {
@@ -220,16 +222,18 @@ fn add_feet(out: &mut Parts, cutter: &Cutter<'_>, worn: &Worn) {
         ShoeKind::Sneakers => SOLE_M + 0.014,
         _ => SOLE_M + 0.006,
     };
-    let normals = layers::normals_of(shell, &worn.feet.shoes);
     let parts = [
         (PartKind::Shoes, Piece::Shoes, &worn.feet.shoes, 1.0, cutter.rim()),
         (PartKind::Soles, Piece::Sole, &worn.feet.soles, -1.0, None),
     ];
     for (kind, piece, layer, sign, rim) in parts {
-        let edge = worn.feet.shoes.iter().map(|p| sign * (p.y - edge_m));
-        let field: Vec<f32> =
-            shell.places.iter().zip(edge).map(|(at, e)| cutter.field(piece, *at).min(e)).collect();
-        let range = out.builder.add_cut(&cutter.body.with(layer, &normals), &field, rim);
+        let mut field = cutter.fields(piece);
+        for (f, p) in field.iter_mut().zip(&worn.feet.shoes).filter(|(f, _)| **f > NOT_WORN) {
+            *f = f.min(sign * (p.y - edge_m));
+        }
+        let normals = normals_within(&worn.feet.shoes, shell.net, &field);
+        let part = Refined::new(&cutter.body.with(layer, &normals), &field);
+        let range = out.builder.add_cut(&part.surface(), part.field(), rim);
         out.add(kind, range, true);
     }
 }
@@ -240,6 +244,13 @@ struct Cutter<'a> {
     shell: &'a Shell<'a>,
     cuts: &'a Cuts,
     lod: usize,
+}
+
+/// A piece that was added to a mesh.
+struct Added {
+    triangles: Range<u32>,
+    /// Of the shell's vertices that the piece has; +Y elsewhere.
+    normals: Vec<Vec3>,
 }
 
 impl Cutter<'_> {
@@ -255,25 +266,37 @@ impl Cutter<'_> {
         if inside < 0.0 { inside } else { inside.min(self.cuts.deepest_m(piece, at)) }
     }
 
-    /// The finest level follows the curve of a hem inside the shell's triangles.
-    fn cut(
-        &self,
-        builder: &mut Builder,
-        piece: Piece,
-        layer: &[Vec3],
-        rim: Option<Rim>,
-    ) -> std::ops::Range<u32> {
+    /// The same at the shell's vertices; [`NOT_WORN`] at those of triangles that are all outside.
+    fn fields(&self, piece: Piece) -> Vec<f32> {
         let shell = self.shell;
-        let field: Vec<f32> = shell.places.iter().map(|at| self.field(piece, *at)).collect();
-        let normals = layers::normals_of(shell, layer);
-        let whole: Surface<'_> = self.body.with(layer, &normals);
-        if self.lod > 0 {
-            return builder.add_cut(&whole, &field, rim);
-        }
-        let between = |a: usize, b: usize| {
-            self.field(piece, Place::between(shell.places[a], shell.places[b]))
+        let near = |at: &Place| match self.cuts.is_off(piece, *at, 0.0) {
+            true => NOT_WORN,
+            false => self.field(piece, *at),
         };
-        let fine = Refined::new(&whole, &field, between);
-        builder.add_cut(&fine.surface(), fine.field(), rim)
+        let mut field: Vec<f32> = shell.places.iter().map(near).collect();
+        // A cut lies between the values on its two sides.
+        for t in &shell.net.triangles {
+            let v = t.map(usize::from);
+            if v.iter().any(|&v| field[v] >= 0.0) {
+                for v in v {
+                    if field[v] == NOT_WORN {
+                        field[v] = self.field(piece, shell.places[v]);
+                    }
+                }
+            }
+        }
+        field
+    }
+
+    /// The finest level follows the curve of a hem inside the shell's triangles.
+    fn cut(&self, builder: &mut Builder, piece: Piece, layer: &[Vec3], rim: Option<Rim>) -> Added {
+        let shell = self.shell;
+        let field = self.fields(piece);
+        let normals = normals_within(layer, shell.net, &field);
+        let mut part = Refined::new(&self.body.with(layer, &normals), &field);
+        if self.lod == 0 {
+            part.refine(|a, b| self.field(piece, Place::between(shell.places[a], shell.places[b])));
+        }
+        Added { triangles: builder.add_cut(&part.surface(), part.field(), rim), normals }
     }
 }

@@ -4,13 +4,13 @@
 //! everything, skin weights included. Hems get a small rim turned inwards, so that cloth has a
 //! thickness. What is cut where is decided by the callers.
 
-use std::borrow::Cow;
-use std::collections::BTreeMap;
 use std::ops::Range;
 
 use glam::Vec3;
 
-use crate::library::mesh::{Mesh, SkinVertex};
+use super::lookup::{Lookup, edge};
+use crate::library::figure::Net;
+use crate::library::mesh::{Mesh, SkinVertex, Triangle};
 
 /// A surface to be cut: vertices of a group's prefix and triangles of its render vertices.
 pub(super) struct Surface<'a> {
@@ -28,71 +28,111 @@ pub(super) struct Surface<'a> {
     pub skin: &'a [SkinVertex],
 }
 
-/// A surface with its own vertices, and a field over them.
-pub(super) struct Refined<'a> {
+/// The part of a surface that a cut keeps, with vertices of its own and a field over them.
+pub(super) struct Refined {
     render: Vec<u16>,
     uvs: Vec<f32>,
     triangles: Vec<u16>,
     positions: Vec<Vec3>,
     normals: Vec<Vec3>,
     skin: Vec<SkinVertex>,
-    field: Cow<'a, [f32]>,
+    field: Vec<f32>,
+    /// The old surface's vertices, for those that are not new.
+    origin: Vec<u16>,
 }
 
-impl<'a> Refined<'a> {
-    /// Splits every triangle that the field's zero crosses into four, so that the cut follows a
-    /// curved line, and its neighbours at the edges they share, so that no gap opens when the
-    /// surface is posed. New vertices lie on the old edges, where `between` gives the field.
-    pub fn new(s: &Surface<'_>, field: &'a [f32], between: impl Fn(usize, usize) -> f32) -> Self {
+const NONE: u16 = u16::MAX;
+
+impl Refined {
+    /// The triangles of a surface that have a corner where `field` (by vertex) is not negative.
+    pub fn new(s: &Surface<'_>, field: &[f32]) -> Self {
         let mut out = Self {
-            render: s.render.to_vec(),
-            uvs: s.uvs.to_vec(),
-            triangles: Vec::with_capacity(s.triangles.len() + 1024),
-            positions: s.positions.to_vec(),
-            normals: s.normals.to_vec(),
-            skin: s.skin.to_vec(),
-            field: Cow::Borrowed(field),
+            render: Vec::new(),
+            uvs: Vec::new(),
+            triangles: Vec::new(),
+            positions: Vec::new(),
+            normals: Vec::new(),
+            skin: Vec::new(),
+            field: Vec::new(),
+            origin: Vec::new(),
         };
-        let (vertices, touched) = out.split_crossed(s, between);
-        let mut corners = BTreeMap::<CutKey, u16>::new();
+        let (mut vertices, mut corners) =
+            (vec![NONE; s.positions.len()], vec![NONE; s.render.len()]);
         for t in s.triangles.chunks_exact(3) {
-            let r = [t[0], t[1], t[2]];
-            let v = r.map(|r| s.render[usize::from(r)]);
-            if v.iter().filter(|&&v| touched[usize::from(v)]).count() < 2 {
-                out.triangles.extend(r);
+            let v = [t[0], t[1], t[2]].map(|r| usize::from(s.render[usize::from(r)]));
+            if v.iter().all(|&v| field[v] < 0.0) {
                 continue;
             }
-            let middle: [Option<u16>; 3] = std::array::from_fn(|i| {
-                let j = (i + 1) % 3;
-                let vertex = *vertices.get(&(v[i].min(v[j]), v[i].max(v[j])))?;
-                let (a, b) = (r[i].min(r[j]), r[i].max(r[j]));
-                Some(*corners.entry((a, b)).or_insert_with(|| out.corner(vertex, a, b)))
-            });
-            out.divide(r, middle);
+            for (&r, v) in t.iter().zip(v) {
+                let slot = usize::from(r);
+                if corners[slot] == NONE {
+                    if vertices[v] == NONE {
+                        vertices[v] = out.positions.len() as u16;
+                        out.positions.push(s.positions[v]);
+                        out.normals.push(s.normals[v]);
+                        out.skin.push(s.skin[v]);
+                        out.field.push(field[v]);
+                        out.origin.push(v as u16);
+                    }
+                    corners[slot] = out.render.len() as u16;
+                    out.render.push(vertices[v]);
+                    out.uvs.extend_from_slice(&s.uvs[2 * slot..2 * slot + 2]);
+                }
+                out.triangles.push(corners[slot]);
+            }
         }
         out
     }
 
+    /// Splits every triangle that the field's zero crosses into four, so that the cut follows a
+    /// curved line, and its neighbours at the edges they share, so that no gap opens when the
+    /// surface is posed. New vertices lie on the old edges, where `between` gives the field from
+    /// vertices of the old surface.
+    pub fn refine(&mut self, between: impl Fn(usize, usize) -> f32) {
+        let (vertices, touched) = self.split_crossed(between);
+        let mut corners = Lookup::<u16>::new();
+        let before = std::mem::take(&mut self.triangles);
+        self.triangles.reserve(before.len() + 1024);
+        for t in before.chunks_exact(3) {
+            let r = [t[0], t[1], t[2]];
+            let v = r.map(|r| self.render[usize::from(r)]);
+            // The vertices of an edge that was split are both touched.
+            if v.iter().filter(|&&v| touched[usize::from(v)]).count() < 2 {
+                self.triangles.extend(r);
+                continue;
+            }
+            let middle: [Option<u16>; 3] = std::array::from_fn(|i| {
+                let j = (i + 1) % 3;
+                let vertex = vertices.get(edge(v[i], v[j]))?;
+                let key = edge(r[i], r[j]);
+                Some(corners.get(key).unwrap_or_else(|| {
+                    let new = self.corner(vertex, r[i].min(r[j]), r[i].max(r[j]));
+                    corners.set(key, new);
+                    new
+                }))
+            });
+            self.divide(r, middle);
+        }
+    }
+
     /// New vertices in the middle of all edges of crossed triangles, by edge; and which old
     /// vertices have such an edge.
-    fn split_crossed(
-        &mut self,
-        s: &Surface<'_>,
-        between: impl Fn(usize, usize) -> f32,
-    ) -> (BTreeMap<CutKey, u16>, Vec<bool>) {
-        let mut vertices = BTreeMap::new();
-        let mut touched = vec![false; s.positions.len()];
-        for t in s.triangles.chunks_exact(3) {
-            let v = [t[0], t[1], t[2]].map(|r| s.render[usize::from(r)]);
+    fn split_crossed(&mut self, between: impl Fn(usize, usize) -> f32) -> (Lookup<u16>, Vec<bool>) {
+        let mut vertices = Lookup::new();
+        let mut touched = vec![false; self.positions.len()];
+        for i in 0..self.triangles.len() / 3 {
+            let t = [0, 1, 2].map(|k| self.triangles[3 * i + k]);
+            let v = t.map(|r| self.render[usize::from(r)]);
             let inside = v.map(|v| self.field[usize::from(v)] >= 0.0);
             if inside[0] == inside[1] && inside[1] == inside[2] {
                 continue;
             }
             for i in 0..3 {
-                let j = (i + 1) % 3;
-                let key = (v[i].min(v[j]), v[i].max(v[j]));
-                vertices.entry(key).or_insert_with(|| self.split(key, &between));
-                touched[usize::from(v[i])] = true;
+                let (a, b) = (v[i], v[(i + 1) % 3]);
+                if vertices.get(edge(a, b)).is_none() {
+                    vertices.set(edge(a, b), self.split((a.min(b), a.max(b)), &between));
+                }
+                touched[usize::from(a)] = true;
             }
         }
         (vertices, touched)
@@ -123,12 +163,12 @@ impl<'a> Refined<'a> {
         }
     }
 
-    fn split(&mut self, (a, b): CutKey, between: &impl Fn(usize, usize) -> f32) -> u16 {
+    fn split(&mut self, (a, b): (u16, u16), between: &impl Fn(usize, usize) -> f32) -> u16 {
         let (i, j) = (usize::from(a), usize::from(b));
         self.positions.push((self.positions[i] + self.positions[j]) * 0.5);
         self.normals.push((self.normals[i] + self.normals[j]).normalize_or(Vec3::Y));
         self.skin.push(mix_skin(self.skin[i], self.skin[j], 0.5));
-        self.field.to_mut().push(between(i, j));
+        self.field.push(between(usize::from(self.origin[i]), usize::from(self.origin[j])));
         self.positions.len() as u16 - 1
     }
 
@@ -161,6 +201,47 @@ pub(super) fn smooth_normals(positions: &[Vec3], render: &[u16], triangles: &[u1
     sums.iter().map(|n| n.normalize_or(Vec3::Y)).collect()
 }
 
+/// The same of a net's vertices, where they belong to a triangle that has a corner at which `field`
+/// is not negative; +Y elsewhere.
+pub(super) fn normals_within(positions: &[Vec3], net: &Net, field: &[f32]) -> Vec<Vec3> {
+    let mut wanted = vec![false; positions.len()];
+    for t in &net.triangles {
+        let v = t.map(usize::from);
+        if v.iter().any(|&v| field[v] >= 0.0) {
+            v.iter().for_each(|&v| wanted[v] = true);
+        }
+    }
+    let near = net.triangles.iter().filter(|t| t.iter().any(|&v| wanted[usize::from(v)]));
+    let mut normals = vec![Vec3::ZERO; positions.len()];
+    add_normals(&mut normals, positions, near);
+    for (n, wanted) in normals.iter_mut().zip(wanted) {
+        *n = if wanted { n.normalize_or(Vec3::Y) } else { Vec3::Y };
+    }
+    normals
+}
+
+/// Smooth unit normals of all of a net's vertices.
+pub(super) fn net_normals(positions: &[Vec3], net: &Net) -> Vec<Vec3> {
+    let mut normals = vec![Vec3::ZERO; positions.len()];
+    add_normals(&mut normals, positions, net.triangles.iter());
+    normals.iter_mut().for_each(|n| *n = n.normalize_or(Vec3::Y));
+    normals
+}
+
+fn add_normals<'a>(
+    sums: &mut [Vec3],
+    positions: &[Vec3],
+    triangles: impl Iterator<Item = &'a [u16; 3]>,
+) {
+    for t in triangles {
+        let [a, b, c] = t.map(usize::from);
+        let n = (positions[b] - positions[a]).cross(positions[c] - positions[a]);
+        sums[a] += n;
+        sums[b] += n;
+        sums[c] += n;
+    }
+}
+
 /// A hem's rim.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Rim {
@@ -180,9 +261,6 @@ pub(super) struct Builder {
 
 const UNKNOWN: u32 = u32::MAX;
 
-/// A cut point: mesh vertex and the vertices between which it lies.
-type CutKey = (u16, u16);
-
 impl Builder {
     fn start(&mut self, render: usize) -> u32 {
         self.known.clear();
@@ -191,11 +269,8 @@ impl Builder {
     }
 
     fn push(&mut self, p: Vec3, n: Vec3, uv: [f32; 2], s: SkinVertex) -> u32 {
-        self.mesh.positions.push(p.to_array());
-        self.mesh.normals.push(n.to_array());
-        self.mesh.uvs.push(uv);
         self.mesh.skin.push(s);
-        self.mesh.positions.len() as u32 - 1
+        self.mesh.push(p.to_array(), n.to_array(), uv)
     }
 
     fn keep(&mut self, s: &Surface<'_>, r: u16) -> u32 {
@@ -208,14 +283,32 @@ impl Builder {
         self.known[slot]
     }
 
-    /// Adds the triangles for which `keep` holds; returns their range.
-    pub fn add_where(&mut self, s: &Surface<'_>, keep: impl Fn([usize; 3]) -> bool) -> Range<u32> {
+    /// An empty mesh with room for about so many vertices and twice as many triangles.
+    pub fn with_room(vertices: usize) -> Self {
+        let mesh = Mesh {
+            positions: Vec::with_capacity(vertices),
+            normals: Vec::with_capacity(vertices),
+            uvs: Vec::with_capacity(vertices),
+            skin: Vec::with_capacity(vertices),
+            triangles: Vec::with_capacity(2 * vertices),
+            ..Mesh::default()
+        };
+        Self { mesh, known: Vec::new() }
+    }
+
+    /// Adds the triangles for which `keep` holds, of their render vertices and their vertices;
+    /// returns their range.
+    pub fn add_where(
+        &mut self,
+        s: &Surface<'_>,
+        keep: impl Fn([u16; 3], [usize; 3]) -> bool,
+    ) -> Range<u32> {
         let first = self.start(s.render.len());
         for t in s.triangles.chunks_exact(3) {
             let corners = [t[0], t[1], t[2]].map(|r| usize::from(s.render[usize::from(r)]));
-            if keep(corners) {
+            if keep([t[0], t[1], t[2]], corners) {
                 let tri = [t[0], t[1], t[2]].map(|r| self.keep(s, r));
-                self.mesh.triangles.push(tri);
+                self.mesh.triangles.push(Triangle::new(tri));
             }
         }
         first..self.mesh.triangles.len() as u32
@@ -224,7 +317,7 @@ impl Builder {
     /// Adds the part of a surface where `field` (by vertex) is not negative.
     pub fn add_cut(&mut self, s: &Surface<'_>, field: &[f32], rim: Option<Rim>) -> Range<u32> {
         let first = self.start(s.render.len());
-        let mut cuts = BTreeMap::<CutKey, u32>::new();
+        let mut cuts = Lookup::<u32>::new();
         let mut hems = Vec::new();
         for t in s.triangles.chunks_exact(3) {
             let r = [t[0], t[1], t[2]];
@@ -234,7 +327,7 @@ impl Builder {
                 0 => {}
                 3 => {
                     let tri = r.map(|r| self.keep(s, r));
-                    self.mesh.triangles.push(tri);
+                    self.mesh.triangles.push(Triangle::new(tri));
                 }
                 kept => {
                     // The odd corner comes first; the order round the triangle is kept.
@@ -245,14 +338,14 @@ impl Builder {
                     let q = self.cut(s, &mut cuts, (a, fa), (c, fc));
                     if kept == 1 {
                         let a = self.keep(s, a);
-                        self.mesh.triangles.push([a, p, q]);
+                        self.mesh.triangles.push(Triangle::new([a, p, q]));
                         hems.push([
                             (p, geometry_key(s, t, odd, 1)),
                             (q, geometry_key(s, t, odd, 2)),
                         ]);
                     } else {
                         let (b, c) = (self.keep(s, b), self.keep(s, c));
-                        self.mesh.triangles.extend([[b, c, p], [c, q, p]]);
+                        self.mesh.triangles.extend([[b, c, p], [c, q, p]].map(Triangle::new));
                         hems.push([
                             (q, geometry_key(s, t, odd, 2)),
                             (p, geometry_key(s, t, odd, 1)),
@@ -271,12 +364,12 @@ impl Builder {
     fn cut(
         &mut self,
         s: &Surface<'_>,
-        cuts: &mut BTreeMap<CutKey, u32>,
+        cuts: &mut Lookup<u32>,
         a: (u16, f32),
         b: (u16, f32),
     ) -> u32 {
         let ((a, fa), (b, fb)) = if a.0 < b.0 { (a, b) } else { (b, a) };
-        if let Some(&known) = cuts.get(&(a, b)) {
+        if let Some(known) = cuts.get(edge(a, b)) {
             return known;
         }
         let t = fa / (fa - fb);
@@ -289,50 +382,52 @@ impl Builder {
             uv,
             mix_skin(s.skin[i], s.skin[j], t),
         );
-        cuts.insert((a, b), new);
+        cuts.set(edge(a, b), new);
         new
     }
 
     /// Strips along the hems' edges, each running with the cloth on its left seen from outside.
-    fn add_rim(&mut self, hems: &[[(u32, CutKey); 2]], rim: Rim) {
+    fn add_rim(&mut self, hems: &[[(u32, u32); 2]], rim: Rim) {
         let at = |m: &Mesh, v: u32| Vec3::from_array(m.positions[v as usize]);
-        let normal = |m: &Mesh, v: u32| Vec3::from_array(m.normals[v as usize]);
+        let normal = |m: &Mesh, v: u32| Vec3::from_array(m.normals[v as usize].unit());
         // Directions out of the cloth, summed over the edges that meet in a point of the hem (by
         // the shell's vertices, so that texture seams do not part them).
-        let mut out = BTreeMap::<CutKey, Vec3>::new();
+        let mut out = Lookup::<Vec3>::new();
         for &[(p, kp), (q, kq)] in hems {
             let along = at(&self.mesh, q) - at(&self.mesh, p);
             let d = along.cross(normal(&self.mesh, p) + normal(&self.mesh, q));
-            *out.entry(kp).or_insert(Vec3::ZERO) += d;
-            *out.entry(kq).or_insert(Vec3::ZERO) += d;
+            for key in [kp, kq] {
+                out.set(key, out.get(key).unwrap_or(Vec3::ZERO) + d);
+            }
         }
-        let mut rings = BTreeMap::<u32, [u32; 2]>::new();
+        let mut rings = Lookup::<[u32; 2]>::new();
         for &[(p, kp), (q, kq)] in hems {
             let [a, b] = [(p, kp), (q, kq)].map(|(v, key)| {
-                *rings.entry(v).or_insert_with(|| {
-                    let (x, n) = (at(&self.mesh, v), normal(&self.mesh, v));
-                    let d = out[&key].normalize_or(n);
-                    let (uv, s) = (self.mesh.uvs[v as usize], self.mesh.skin[v as usize]);
-                    let t = rim.thickness_m;
-                    let middle =
-                        if rim.round { self.push(x + (d - n) * (0.5 * t), d, uv, s) } else { v };
-                    let inner = if rim.round { -n } else { d };
-                    [middle, self.push(x - n * t, inner, uv, s)]
-                })
+                if let Some(known) = rings.get(v) {
+                    return known;
+                }
+                let (x, n) = (at(&self.mesh, v), normal(&self.mesh, v));
+                let d = out.get(key).unwrap_or(n).normalize_or(n);
+                let (uv, s) = (self.mesh.uvs[v as usize], self.mesh.skin[v as usize]);
+                let t = rim.thickness_m;
+                let middle =
+                    if rim.round { self.push(x + (d - n) * (0.5 * t), d, uv, s) } else { v };
+                let inner = if rim.round { -n } else { d };
+                let ring = [middle, self.push(x - n * t, inner, uv, s)];
+                rings.set(v, ring);
+                ring
             });
             if rim.round {
-                self.mesh.triangles.extend([[p, a[0], b[0]], [p, b[0], q]]);
+                self.mesh.triangles.extend([[p, a[0], b[0]], [p, b[0], q]].map(Triangle::new));
             }
-            self.mesh.triangles.extend([[a[0], a[1], b[1]], [a[0], b[1], b[0]]]);
+            self.mesh.triangles.extend([[a[0], a[1], b[1]], [a[0], b[1], b[0]]].map(Triangle::new));
         }
     }
 }
 
-/// Vertices of the cut edge between the odd corner and the one `step` after it.
-fn geometry_key(s: &Surface<'_>, t: &[u16], odd: usize, step: usize) -> CutKey {
-    let a = s.render[usize::from(t[odd])];
-    let b = s.render[usize::from(t[(odd + step) % 3])];
-    (a.min(b), a.max(b))
+/// Key of the vertices of the cut edge between the odd corner and the one `step` after it.
+fn geometry_key(s: &Surface<'_>, t: &[u16], odd: usize, step: usize) -> u32 {
+    edge(s.render[usize::from(t[odd])], s.render[usize::from(t[(odd + step) % 3])])
 }
 
 /// The four largest joints of two weighted sets, in 1/255 again.
@@ -368,6 +463,8 @@ pub(super) fn mix_skin(a: SkinVertex, b: SkinVertex, t: f32) -> SkinVertex {
 
 #[cfg(test)]
 mod tests {
+    use std::collections::BTreeMap;
+
     use super::*;
 
     /// A strip of squares in the plane z = 0, x from 0 to n, y from 0 to 1.
@@ -408,7 +505,7 @@ mod tests {
         m.triangles
             .iter()
             .map(|t| {
-                let [a, b, c] = t.map(|v| Vec3::from_array(m.positions[v as usize]));
+                let [a, b, c] = t.get().map(|v| Vec3::from_array(m.positions[v as usize]));
                 (b - a).cross(c - a).z * 0.5
             })
             .sum()
@@ -443,7 +540,10 @@ mod tests {
             normals: &normals,
             skin: &skin,
         };
-        let fine = Refined::new(&s, &field, |a, b| curve((positions[a] + positions[b]) * 0.5));
+        // Field values say which triangles are kept: here all.
+        let mut fine = Refined::new(&s, &field.iter().map(|f| f.abs()).collect::<Vec<_>>());
+        fine.field = fine.origin.iter().map(|&v| field[usize::from(v)]).collect();
+        fine.refine(|a, b| curve((positions[a] + positions[b]) * 0.5));
         let surface = fine.surface();
         let mut edges = BTreeMap::<[u16; 2], i32>::new();
         let mut whole = 0.0;
@@ -485,7 +585,7 @@ mod tests {
         assert!((deepest + 0.1).abs() < 1e-5, "{deepest}");
         // Seen from outside the opening the rim's faces are front faces.
         for t in &m.triangles {
-            let [a, b, c] = t.map(|v| Vec3::from_array(m.positions[v as usize]));
+            let [a, b, c] = t.get().map(|v| Vec3::from_array(m.positions[v as usize]));
             let n = (b - a).cross(c - a);
             assert!(n.z > 0.0 || n.x > 0.0, "{n}");
         }

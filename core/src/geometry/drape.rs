@@ -122,28 +122,39 @@ impl Tube {
     /// the nearest of them.
     fn sections(&self, flat: &[(usize, [f32; 2])], rows: usize) -> Vec<f32> {
         let n = self.columns;
+        let [cos, sin]: [Vec<f32>; 2] =
+            [0, 1].map(|axis| self.directions.iter().map(|d| d[axis]).collect());
         let mut reach = vec![f32::MIN; rows * n];
         for (row, q) in flat {
             for row in self.near(*row, rows) {
                 let [a, b] = [q[0] - self.centers[row][0], q[1] - self.centers[row][1]];
-                for (h, d) in reach[row * n..(row + 1) * n].iter_mut().zip(&self.directions) {
-                    *h = h.max(a * d[0] + b * d[1]);
+                for ((h, c), s) in reach[row * n..(row + 1) * n].iter_mut().zip(&cos).zip(&sin) {
+                    let along = a * c + b * s;
+                    *h = if along > *h { along } else { *h };
                 }
             }
         }
-        let quarter = (n / 4).max(1) as i32;
+        let quarter = (n / 4).max(1);
         let mut radii = vec![0.0; rows * n];
-        for row in 0..rows {
-            if reach[row * n] == f32::MIN {
+        let mut round = vec![0.0; n + 2 * quarter];
+        for (radii, reach) in radii.chunks_exact_mut(n).zip(reach.chunks_exact(n)) {
+            if reach[0] == f32::MIN {
                 continue;
             }
-            for k in 0..n {
-                let near = |j: i32| {
-                    let m = (k as i32 + j).rem_euclid(n as i32) as usize;
-                    let cos = self.directions[j.unsigned_abs() as usize % n][0];
-                    if cos > 0.1 { reach[row * n + m] / cos } else { f32::MAX }
-                };
-                radii[row * n + k] = (-quarter..=quarter).map(near).fold(f32::MAX, f32::min);
+            // The row once round, with a quarter more at either end.
+            for (i, h) in round.iter_mut().enumerate() {
+                *h = reach[(i + n - quarter) % n];
+            }
+            radii.fill(f32::MAX);
+            for (off, h) in (0..=2 * quarter).map(|k| (k.abs_diff(quarter), &round[k..k + n])) {
+                let aslant = cos[off % n];
+                if aslant > 0.1 {
+                    let per_cos = 1.0 / aslant;
+                    for (radius, h) in radii.iter_mut().zip(h) {
+                        let here = h * per_cos;
+                        *radius = if here < *radius { here } else { *radius };
+                    }
+                }
             }
         }
         fill_gaps(&mut radii, rows, n);
@@ -187,9 +198,8 @@ impl Tube {
         let b = r.dot(self.ahead) - mix(c[1], d[1]);
         let own = (a * a + b * b).sqrt();
         let n = self.columns;
-        let turn = libm::atan2f(b, a) / std::f32::consts::TAU;
-        let at = (turn - libm::floorf(turn)) * n as f32;
-        let (k, s) = (at as usize % n, at - libm::floorf(at));
+        let at = turn(a, b) * n as f32;
+        let (k, s) = (at as usize % n, at - (at as usize) as f32);
         let along = |row: usize| {
             let (x, y) = (self.radii[row * n + k], self.radii[row * n + (k + 1) % n]);
             x + (y - x) * s
@@ -197,6 +207,20 @@ impl Tube {
         let out = (self.across * a + self.ahead * b).normalize_or(self.ahead);
         Spot { radius: mix(along(i), along(i + 1)), own, out }
     }
+}
+
+/// The angle from the first axis towards the second, as a share of a turn, 0..1, to 2e-6: by a
+/// polynomial (Abramowitz and Stegun, "Handbook of Mathematical Functions", 4.4.47).
+fn turn(a: f32, b: f32) -> f32 {
+    let (x, y) = (a.abs(), b.abs());
+    let t = x.min(y) / x.max(y).max(f32::MIN_POSITIVE);
+    let s = t * t;
+    let series = 0.180_141 + s * (-0.085_133 + s * 0.020_835_1);
+    let angle = t * (0.999_866 + s * (-0.330_299_5 + s * series));
+    let eighth = angle * (1.0 / std::f32::consts::TAU);
+    let quarter = if y > x { 0.25 - eighth } else { eighth };
+    let half = if a < 0.0 { 0.5 - quarter } else { quarter };
+    if b < 0.0 && half > 0.0 { 1.0 - half } else { half }
 }
 
 /// Rows without points take the radii of the row before.
@@ -242,6 +266,18 @@ mod tests {
         assert!((front.radius - 0.05).abs() < 0.003 && front.out.z > 0.99);
         let side = tube.spot(Vec3::new(0.3, 0.5, 0.0));
         assert!((side.radius - 0.15).abs() < 0.003, "{}", side.radius);
+    }
+
+    #[test]
+    fn turns_are_those_of_the_arc_tangent() {
+        for i in 0..720 {
+            let angle = std::f32::consts::TAU * i as f32 / 720.0;
+            let found = turn(0.3 * libm::cosf(angle), 0.3 * libm::sinf(angle));
+            let off = (found - i as f32 / 720.0).abs();
+            assert!(off < 3e-6 || (off - 1.0).abs() < 3e-6, "{i} {found}");
+            assert!((0.0..=1.0).contains(&found));
+        }
+        assert_eq!(turn(0.0, 0.0), 0.0);
     }
 
     #[test]

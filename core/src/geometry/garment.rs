@@ -8,7 +8,7 @@
 use glam::Vec3;
 
 use crate::library::figure::data::LIMB_UNIT;
-use crate::library::figure::{Figure, GroupId, LOD_COUNT};
+use crate::library::figure::{ARM_M, Figure, GroupId, LEG_M, LOD_COUNT};
 use crate::scene::{BottomKind, OuterKind, Outfit, ShoeKind, TopKind};
 
 /// Upper edge of trousers on the template, metres above its origin.
@@ -29,11 +29,10 @@ const HIDDEN_M: [f32; LOD_COUNT] = [0.016, 0.016, 0.012, 0.006, 0.002];
 pub(super) const DEEP_M: f32 = 0.045;
 /// How far skin under cloth is drawn inwards, by level of detail.
 const TUCK_M: [f32; LOD_COUNT] = [0.004, 0.004, 0.006, 0.010, 0.016];
-/// Lengths of arm and leg on the template.
-pub(super) const ARM_M: f32 = 0.42;
-pub(super) const LEG_M: f32 = 0.80;
+/// Farther than this from a piece's edge skin is not drawn inwards.
+const COVERS_M: f32 = 0.004;
 /// A piece that is not worn.
-const NOT_WORN: f32 = -1.0;
+pub(super) const NOT_WORN: f32 = -1.0;
 
 /// A piece of cloth that is cut from the shell.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -169,6 +168,26 @@ impl Cuts {
         }
     }
 
+    /// Whether a place is surely farther from a piece than so many metres: a cheap answer, no where
+    /// the piece might be.
+    pub fn is_off(&self, piece: Piece, at: Place, by_m: f32) -> bool {
+        let Place { p, arm, leg } = at;
+        let below = |y: f32| p.y < y - by_m && arm <= 0.02;
+        match piece {
+            Piece::Top => below(self.hem_y()),
+            Piece::Bottom => p.y > WAIST_Y + by_m,
+            Piece::Outer => below(JACKET_Y),
+            Piece::Shoes => leg < 0.70 - by_m / LEG_M && p.y > -0.70 + by_m,
+            Piece::Sole => p.y > -0.72 + by_m,
+            Piece::Socks => leg < 0.50 - by_m / LEG_M,
+            // A neckline is nowhere lower, and nothing of a collar farther from it than 0.05.
+            Piece::Collar | Piece::OuterCollar => p.y < 0.30 - by_m,
+            Piece::Placket => p.x.abs() > 0.0145 + by_m || p.z < 0.02 - by_m,
+            Piece::Pocket => p.z < 0.04 - by_m || p.y < 0.035 - by_m,
+            Piece::Hood => p.y < 0.15 - by_m,
+        }
+    }
+
     /// How far a place is from where a piece lies too deep under others to be seen.
     pub fn deepest_m(&self, piece: Piece, at: Place) -> f32 {
         let outer = DEEP_M - self.field(Piece::Outer, at);
@@ -227,6 +246,7 @@ impl Cuts {
     fn cover(&self, at: Place) -> f32 {
         [Piece::Top, Piece::Bottom, Piece::Shoes, Piece::Socks]
             .into_iter()
+            .filter(|piece| !self.is_off(*piece, at, COVERS_M))
             .map(|piece| self.field(piece, at))
             .fold(NOT_WORN, f32::max)
     }
@@ -370,6 +390,29 @@ fn on_arm(at: Place) -> f32 {
     step(0.02, 0.10, at.arm)
 }
 
+/// How far the shell's vertices are inside the pieces that others lie over; [`NOT_WORN`] where that is
+/// far outside.
+pub(super) struct Fields {
+    pub top: Vec<f32>,
+    pub bottom: Vec<f32>,
+    pub shoes: Vec<f32>,
+}
+
+impl Fields {
+    pub fn new(cuts: &Cuts, places: &[Place]) -> Self {
+        // Layers ask no farther from an edge than this.
+        const FAR_M: f32 = 0.04;
+        let of = |piece: Piece| {
+            let field = |at: &Place| match cuts.is_off(piece, *at, FAR_M) {
+                true => NOT_WORN,
+                false => cuts.field(piece, *at),
+            };
+            places.iter().map(field).collect()
+        };
+        Self { top: of(Piece::Top), bottom: of(Piece::Bottom), shoes: of(Piece::Shoes) }
+    }
+}
+
 /// Places of the first `count` vertices of the skin or the shell.
 pub(super) fn places(figure: &Figure, id: GroupId, count: u32) -> Vec<Place> {
     figure.vertices(id, count).map(|v| place(figure, v)).collect()
@@ -412,8 +455,8 @@ pub(super) fn tuck(
     for (((p, n), at), &covered) in
         skin.iter_mut().zip(normals).zip(places).zip(&figure.data().covered)
     {
-        let depth = cuts.cover(*at);
-        if covered != 0 && depth > -0.002 {
+        let depth = if covered != 0 { cuts.cover(*at) } else { NOT_WORN };
+        if depth > -0.002 {
             *p -= *n * (TUCK_M[lod] * step(-0.002, 0.010, depth));
         }
     }

@@ -9,7 +9,7 @@ use glam::Vec3;
 use super::hair::Head;
 use super::hair::scalp::{COLUMNS, ROWS};
 use super::hair::strand::{Path, push, sin_cos_turns, tube};
-use crate::library::mesh::Mesh;
+use crate::library::mesh::{Mesh, Triangle};
 use crate::scene::Glasses;
 
 /// Half the lens's width and height, power of its outline (2 an ellipse, more a rectangle), and
@@ -138,7 +138,7 @@ impl<'a> Fit<'a> {
             .collect();
         for pair in ring.windows(2) {
             let outwards = if side > 0.0 { [pair[0], pair[1]] } else { [pair[1], pair[0]] };
-            mesh.triangles.push([center, outwards[0], outwards[1]]);
+            mesh.triangles.push(Triangle::new([center, outwards[0], outwards[1]]));
         }
     }
 }

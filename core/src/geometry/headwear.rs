@@ -12,7 +12,7 @@ use super::garment::step;
 use super::hair::scalp::{COLUMNS, ROWS};
 use super::hair::strand::sin_cos_turns;
 use super::hair::{Head, add_grid, lump};
-use crate::library::mesh::Mesh;
+use crate::library::mesh::{Mesh, Triangle};
 use crate::scene::HeadwearKind;
 
 /// Local height of the edge at a depth z; nothing if it presses no hair.
@@ -281,7 +281,7 @@ impl Hat<'_> {
         let start = mesh.triangles.len();
         add_grid(mesh, &points, &uvs, wide, true, &|p| self.head.hanging(p));
         let all = mesh.triangles.split_off(start);
-        let seen = |t: &[u32; 3]| t.iter().any(|v| !ends[(v - first) as usize]);
+        let seen = |t: &Triangle| t.get().iter().any(|v| !ends[(v - first) as usize]);
         mesh.triangles.extend(all.into_iter().filter(seen));
     }
 

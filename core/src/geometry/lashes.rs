@@ -10,7 +10,7 @@ use glam::Vec3;
 use super::cut::{Surface, mix_skin};
 use super::hair::strand::push;
 use crate::library::figure::{Figure, GroupId, upper_lid_y};
-use crate::library::mesh::Mesh;
+use crate::library::mesh::{Mesh, Triangle};
 
 /// Places along the lid's edge at which vertices are looked for: distance from the middle of the
 /// face on the template, metres.
@@ -32,6 +32,7 @@ pub(super) fn add(
 ) -> Range<u32> {
     let start = mesh.triangles.len() as u32;
     let middle = eyes.iter().sum::<Vec3>() / eyes.len().max(1) as f32;
+    let round_eyes = round_eyes(figure, skin.positions.len());
     for side in [1.0, -1.0] {
         let ball: Vec<Vec3> =
             eyes.iter().copied().filter(|p| (p.x - middle.x) * side > 0.0).collect();
@@ -41,14 +42,25 @@ pub(super) fn add(
         let center = ball.iter().sum::<Vec3>() / ball.len() as f32;
         let radius = ball.iter().map(|p| (*p - center).length()).sum::<f32>() / ball.len() as f32;
         let roots: Vec<usize> =
-            ALONG_M.iter().filter_map(|x| edge_vertex(figure, skin, side * x)).collect();
+            ALONG_M.iter().filter_map(|x| edge_vertex(figure, &round_eyes, side * x)).collect();
         row(mesh, skin, &roots, (center, side, radius / EYE_M));
     }
     start..mesh.triangles.len() as u32
 }
 
+/// The vertices about the eyes, among the first `count` of the skin's.
+fn round_eyes(figure: &Figure, count: usize) -> Vec<usize> {
+    let t = figure.template();
+    let first = figure.group(GroupId::Skin).first as usize;
+    let near = |v: &usize| {
+        let (x, y) = (t.x[first + v].abs(), t.y[first + v]);
+        (0.70..0.77).contains(&y) && (0.02..0.05).contains(&x)
+    };
+    (0..count).filter(near).collect()
+}
+
 /// The vertex in front on the edge of the upper lid, at a place to the figure's left or right.
-fn edge_vertex(figure: &Figure, skin: &Surface<'_>, x: f32) -> Option<usize> {
+fn edge_vertex(figure: &Figure, near: &[usize], x: f32) -> Option<usize> {
     const REACH_M: [f32; 2] = [0.0012, 0.0009];
     let t = figure.template();
     let first = figure.group(GroupId::Skin).first as usize;
@@ -57,7 +69,7 @@ fn edge_vertex(figure: &Figure, skin: &Surface<'_>, x: f32) -> Option<usize> {
         let (dx, dy) = (t.x[first + v] - x, t.y[first + v] - edge_y);
         dx.abs() < REACH_M[0] && dy.abs() < REACH_M[1]
     };
-    let all = (0..skin.positions.len()).filter(on_edge);
+    let all = near.iter().copied().filter(on_edge);
     all.max_by(|a, b| t.z[first + a].total_cmp(&t.z[first + b]))
 }
 
@@ -88,7 +100,7 @@ fn row(
         let tip = p + ahead * length + Vec3::Y * (0.12 * length);
         let [left, right, tip] =
             [p - across, p + across, tip].map(|q| push(mesh, q, off, [0.0; 2], joints));
-        mesh.triangles.push([left, right, tip]);
+        mesh.triangles.push(Triangle::new([left, right, tip]));
     }
 }
 
@@ -115,11 +127,11 @@ mod tests {
             let at = |v: u32| Vec3::from_array(mesh.positions[v as usize]);
             let front = eyes.positions.iter().map(|p| p.z).fold(f32::MIN, f32::max);
             let middle = eyes.positions.iter().sum::<Vec3>().y / eyes.positions.len() as f32;
-            for (i, [left, _, tip]) in mesh.triangles.iter().enumerate() {
-                let (root, tip) = (at(*left), at(*tip));
+            for (i, [left, _, tip]) in mesh.triangles.iter().map(|t| t.get()).enumerate() {
+                let (root, tip) = (at(left), at(tip));
                 assert!(tip.y > root.y && root.y > middle - 0.001, "{i} {root} {tip}");
                 assert!(tip.z > root.z - 0.002 && root.z > front - 0.010, "{i} {root} {tip}");
-                let other = at(mesh.triangles[(i + each) % (2 * each)][2]);
+                let other = at(mesh.triangles[(i + each) % (2 * each)].get()[2]);
                 assert!((tip * Vec3::new(-1.0, 1.0, 1.0) - other).length() < 1e-4, "{i}");
             }
         }

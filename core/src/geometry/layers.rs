@@ -5,13 +5,12 @@
 //! and tops, what is worn over tops; each keeps off the one below. Where the pieces end is decided
 //! in [`super::garment`].
 
-use glam::{DVec3, Vec3};
+use glam::{DVec3, Vec3, Vec4};
 
-use super::cut::smooth_normals;
 use super::drape::Tube;
-use super::garment::{ARM_M, Cuts, LEG_M, Piece, Place, step};
+use super::garment::{Cuts, Fields, Piece, Place, step};
 use super::skeleton::{JOINT_COUNT, Limb, Side};
-use crate::library::figure::{Figure, GroupId};
+use crate::library::figure::{ARM_M, Figure, GroupId, Neighbour, Net};
 use crate::scene::{BottomKind, TopKind};
 
 /// Cloth that lies over another keeps this distance.
@@ -34,7 +33,7 @@ pub(super) struct Shell<'a> {
     pub places: Vec<Place>,
     /// Joints at rest.
     pub heads_m: &'a [DVec3; JOINT_COUNT],
-    net: Net<'a>,
+    pub net: &'a Net,
     /// How far the smoothed shell lies outside the shell itself: hollows that cloth bridges.
     bridge: Vec<f32>,
 }
@@ -48,9 +47,9 @@ impl<'a> Shell<'a> {
         heads_m: &'a [DVec3; JOINT_COUNT],
     ) -> Self {
         let rounds = [7, 5, 3, 2, 1][lod];
-        let group = figure.group(GroupId::Shell);
-        let net = Net { render: &group.render, triangles: &group.lods[lod].triangles };
-        let smooth = net.smoothed(positions, rounds);
+        let net = figure.net(GroupId::Shell, lod);
+        let mut smooth = positions.to_vec();
+        blend(net, &mut smooth, rounds);
         let bridge = positions
             .iter()
             .zip(&smooth)
@@ -79,7 +78,7 @@ impl<'a> Shell<'a> {
                 base.max(self.bridge[i] + 0.4 * base).min(base + most)
             })
             .collect();
-        self.net.soften(&mut heights, 2);
+        soften(self.net, &mut heights, 2);
         heights
     }
 
@@ -115,7 +114,7 @@ impl<'a> Shell<'a> {
         gap: impl Fn(usize) -> f32,
     ) {
         let mut offsets: Vec<Vec3> = layer.iter().zip(under).map(|(q, u)| *q - *u).collect();
-        self.net.blend(&mut offsets, rounds);
+        blend(self.net, &mut offsets, rounds);
         for (i, (q, offset)) in layer.iter_mut().zip(&offsets).enumerate() {
             let low = gap(i) - offset.dot(self.normals[i]);
             *q = under[i] + *offset + self.normals[i] * low.max(0.0);
@@ -170,11 +169,12 @@ struct Falls {
 pub(super) struct Footwear {
     pub shoes: Vec<Vec3>,
     pub soles: Vec<Vec3>,
+    /// Nothing if none are worn.
     pub socks: Vec<Vec3>,
 }
 
 /// Shoes round the feet, with flat soles on the ground.
-pub(super) fn footwear(shell: &Shell<'_>) -> Footwear {
+pub(super) fn footwear(shell: &Shell<'_>, cuts: &Cuts) -> Footwear {
     let off: Vec<f32> = shell
         .bridge
         .iter()
@@ -189,12 +189,20 @@ pub(super) fn footwear(shell: &Shell<'_>) -> Footwear {
     flatten_soles(shell.figure, &mut shoes);
     let outwards = |n: &Vec3| Vec3::new(n.x, 0.0, n.z).normalize_or_zero() * 0.003;
     let soles = shoes.iter().zip(shell.normals).map(|(p, n)| *p + outwards(n)).collect();
-    let socks = shell.heights(|_| 0.0018);
-    Footwear { shoes, soles, socks: shell.pushed(&socks) }
+    let socks = if cuts.wears(Piece::Socks) {
+        shell.pushed(&shell.heights(|_| 0.0018))
+    } else {
+        Vec::new()
+    };
+    Footwear { shoes, soles, socks }
 }
 
 /// Trousers, over the shoes where they reach them.
-pub(super) fn bottom(shell: &Shell<'_>, cuts: &Cuts, shoes: &[Vec3]) -> Vec<Vec3> {
+pub(super) fn bottom(
+    shell: &Shell<'_>,
+    (cuts, fields): (&Cuts, &Fields),
+    shoes: &[Vec3],
+) -> Vec<Vec3> {
     let tight = cuts.bottom == BottomKind::Leggings;
     let base = |i: usize| {
         let at = &shell.places[i];
@@ -214,8 +222,7 @@ pub(super) fn bottom(shell: &Shell<'_>, cuts: &Cuts, shoes: &[Vec3]) -> Vec<Vec3
     }
     let rests = !tight && cuts.leg_end > 0.9;
     shell.settle(&mut layer, shell.positions, 2, |i| {
-        let at = &shell.places[i];
-        let over_shoe = step(-0.02, -0.005, cuts.field(Piece::Shoes, *at)) * f32::from(rests);
+        let over_shoe = step(-0.02, -0.005, fields.shoes[i]) * f32::from(rests);
         let shoe = (shoes[i] - shell.positions[i]).dot(shell.normals[i]) + LAYER_M;
         (0.85 * heights[i]).max(0.0022).max(over_shoe * shoe)
     });
@@ -254,7 +261,7 @@ fn drape_trousers(shell: &Shell<'_>, cuts: &Cuts, layer: &mut [Vec3], falls: Fal
 /// A top, over trousers and over `skirt`, of which the points are given.
 pub(super) fn top(
     shell: &Shell<'_>,
-    cuts: &Cuts,
+    (cuts, fields): (&Cuts, &Fields),
     bottom: Option<&[Vec3]>,
     skirt: &[Vec3],
 ) -> Vec<Vec3> {
@@ -280,7 +287,7 @@ pub(super) fn top(
         }
     });
     shell.settle(&mut layer, shell.positions, 2, |i| {
-        let over = bottom.filter(|_| cuts.field(Piece::Bottom, shell.places[i]) > -0.03);
+        let over = bottom.filter(|_| fields.bottom[i] > -0.03);
         let trousers =
             over.map_or(0.0, |b| (b[i] - shell.positions[i]).dot(shell.normals[i]) + LAYER_M);
         (0.85 * heights[i]).max(0.003).max(trousers)
@@ -294,7 +301,7 @@ pub(super) fn top(
 /// What is worn over the top, and over the skirt's points.
 pub(super) fn outer(
     shell: &Shell<'_>,
-    cuts: &Cuts,
+    (cuts, fields): (&Cuts, &Fields),
     bottom: Option<&[Vec3]>,
     top: &[Vec3],
     skirt: &[Vec3],
@@ -302,9 +309,9 @@ pub(super) fn outer(
     let under: Vec<Vec3> = (0..top.len())
         .map(|i| {
             let (p, n) = (shell.positions[i], shell.normals[i]);
-            let over = bottom.filter(|_| cuts.field(Piece::Bottom, shell.places[i]) > -0.03);
+            let over = bottom.filter(|_| fields.bottom[i] > -0.03);
             let trousers = over.map_or(p, |b| b[i]);
-            let worn = cuts.field(Piece::Top, shell.places[i]) > -0.03;
+            let worn = fields.top[i] > -0.03;
             if worn && (top[i] - p).dot(n) > (trousers - p).dot(n) { top[i] } else { trousers }
         })
         .collect();
@@ -365,28 +372,9 @@ fn crease(shell: &Shell<'_>, layer: &mut [Vec3], most_m: f32) {
     if shell.lod > 1 {
         return;
     }
-    for ((q, n), at) in layer.iter_mut().zip(shell.normals).zip(&shell.places) {
-        *q += *n * (most_m * fold(at));
+    for ((q, n), fold) in layer.iter_mut().zip(shell.normals).zip(shell.figure.creases()) {
+        *q += *n * (most_m * fold);
     }
-}
-
-/// Height of the folds at a place, 0..1: waves along the limb that run aslant round it.
-fn fold(at: &Place) -> f32 {
-    const WAVE_M: f32 = 0.052;
-    let bump = |x: f32, middle: f32, half: f32| step(half, 0.0, (x - middle).abs());
-    let (along_m, share) = if at.arm > 0.05 {
-        (at.arm * ARM_M, bump(at.arm, 0.5, 0.24).max(0.7 * bump(at.arm, 0.92, 0.1)))
-    } else if at.leg > 0.1 {
-        (at.leg * LEG_M, bump(at.leg, 0.52, 0.16).max(0.8 * bump(at.leg, 0.95, 0.1)))
-    } else {
-        (-at.p.y, (0.7 * bump(at.p.y, 0.12, 0.10)).max(0.6 * bump(at.leg, 0.03, 0.1)))
-    };
-    if share <= 0.0 {
-        return 0.0;
-    }
-    let slant = 34.0 * at.p.z + 11.0 * libm::sinf(23.0 * at.p.x);
-    let wave = libm::sinf(along_m * (std::f32::consts::TAU / WAVE_M) + 0.35 * slant);
-    share * (0.5 + 0.5 * wave)
 }
 
 /// Lets a layer hang from the chest and down the arms; `share` fades it.
@@ -462,63 +450,37 @@ fn flatten_soles(figure: &Figure, shoes: &mut [Vec3]) {
     }
 }
 
-/// The shell's triangles as a net of neighbours.
-struct Net<'a> {
-    render: &'a [u16],
-    triangles: &'a [u16],
-}
-
-impl Net<'_> {
-    fn each(&self, mut f: impl FnMut([usize; 3])) {
-        for t in self.triangles.chunks_exact(3) {
-            f([t[0], t[1], t[2]].map(|r| usize::from(self.render[usize::from(r)])));
-        }
-    }
-
-    /// Means of neighbours, half way, `rounds` times.
-    fn blend(&self, points: &mut [Vec3], rounds: usize) {
-        for _ in 0..rounds {
-            let mut sums = vec![(Vec3::ZERO, 0.0f32); points.len()];
-            self.each(|[a, b, c]| {
-                for (v, x, y) in [(a, b, c), (b, c, a), (c, a, b)] {
-                    sums[v].0 += points[x] + points[y];
-                    sums[v].1 += 2.0;
-                }
-            });
-            for (p, (sum, n)) in points.iter_mut().zip(sums) {
-                if n > 0.0 {
-                    *p = (*p + sum / n) * 0.5;
-                }
+/// Means of neighbours, half way, `rounds` times.
+fn blend(net: &Net, points: &mut [Vec3], rounds: usize) {
+    // Four numbers a point are moved at once.
+    let mut before: Vec<Vec4> = points.iter().map(|p| p.extend(0.0)).collect();
+    let mut after = before.clone();
+    for _ in 0..rounds {
+        for (v, p) in after.iter_mut().enumerate() {
+            let around = net.around(v);
+            if !around.is_empty() {
+                let mean = |sum, n: &Neighbour| sum + before[n.vertex as usize] * n.share;
+                *p = (before[v] + around.iter().fold(Vec4::ZERO, mean)) * 0.5;
             }
         }
+        std::mem::swap(&mut before, &mut after);
     }
-
-    fn smoothed(&self, points: &[Vec3], rounds: usize) -> Vec<Vec3> {
-        let mut out = points.to_vec();
-        self.blend(&mut out, rounds);
-        out
-    }
-
-    /// The same for numbers.
-    fn soften(&self, values: &mut [f32], rounds: usize) {
-        for _ in 0..rounds {
-            let mut sums = vec![(0.0f32, 0.0f32); values.len()];
-            self.each(|[a, b, c]| {
-                for (v, x, y) in [(a, b, c), (b, c, a), (c, a, b)] {
-                    sums[v].0 += values[x] + values[y];
-                    sums[v].1 += 2.0;
-                }
-            });
-            for (v, (sum, n)) in values.iter_mut().zip(sums) {
-                if n > 0.0 {
-                    *v = (*v + sum / n) * 0.5;
-                }
-            }
-        }
+    for (p, q) in points.iter_mut().zip(before) {
+        *p = q.truncate();
     }
 }
 
-/// Normals of a layer of the shell.
-pub(super) fn normals_of(shell: &Shell<'_>, layer: &[Vec3]) -> Vec<Vec3> {
-    smooth_normals(layer, shell.net.render, shell.net.triangles)
+/// The same for numbers.
+fn soften(net: &Net, values: &mut [f32], rounds: usize) {
+    let mut after = values.to_vec();
+    for _ in 0..rounds {
+        for (v, value) in after.iter_mut().enumerate() {
+            let around = net.around(v);
+            if !around.is_empty() {
+                let mean = |sum, n: &Neighbour| sum + values[n.vertex as usize] * n.share;
+                *value = (values[v] + around.iter().fold(0.0, mean)) * 0.5;
+            }
+        }
+        values.copy_from_slice(&after);
+    }
 }

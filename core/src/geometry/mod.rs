@@ -32,6 +32,7 @@ mod hand;
 mod headwear;
 mod lashes;
 mod layers;
+mod lookup;
 pub mod person;
 pub mod phenotype;
 pub mod points;

@@ -11,7 +11,7 @@ use std::sync::Arc;
 use glam::Vec3;
 
 use super::body::RestBody;
-use super::cut::{Builder, Surface as Cloth, smooth_normals};
+use super::cut::{Builder, Surface as Cloth, net_normals};
 use super::garment::{self, Cuts};
 use super::{beard, clothes, glasses, hair, headwear, lashes, phenotype};
 use crate::base::hash::Hasher;
@@ -97,7 +97,7 @@ impl<'a> Evaluated<'a> {
             .into_iter()
             .map(Vec3::from_array)
             .collect();
-        let normals = smooth_normals(&positions, &group.render, &level.triangles);
+        let normals = net_normals(&positions, figure.net(id, lod));
         let uvs = match id {
             GroupId::Skin => figure.skin_uvs(),
             GroupId::Shell => figure.shell_uvs(),
@@ -184,13 +184,16 @@ impl MeshKey {
     }
 }
 
+/// Vertices of most people, by level of detail.
+const VERTICES: [usize; LOD_COUNT] = [26_000, 12_000, 7_500, 4_000, 2_200];
+
 /// Dresses a person at a level of detail, 0 the finest; levels beyond the coarsest are the
 /// coarsest.
 #[must_use]
 pub fn dress(figure: &Figure, person: &Person, rest: &RestBody, lod: usize) -> Dressed {
     let lod = lod.min(LOD_COUNT - 1);
     let cuts = Cuts::new(&person.outfit);
-    let mut out = Parts { builder: Builder::default(), parts: Vec::new() };
+    let mut out = Parts { builder: Builder::with_room(VERTICES[lod]), parts: Vec::new() };
     let skin = add_skin(&mut out, figure, rest, &cuts, lod);
     add_face(&mut out, figure, person, (rest, &skin), lod);
     add_head(&mut out, figure, person, (rest, &skin), lod);
@@ -216,11 +219,9 @@ fn add_skin<'a>(
     garment::tuck(figure, cuts, &places, lod, &mut skin.positions, &skin.normals);
     let on_head = figure.on_head();
     for (kind, wanted) in [(PartKind::Head, true), (PartKind::Skin, false)] {
-        let keep = |r: u16| on_head[usize::from(r)] == wanted;
-        let triangles: Vec<u16> =
-            skin.triangles.chunks_exact(3).filter(|t| keep(t[0])).flatten().copied().collect();
-        let part = Cloth { triangles: &triangles, ..skin.surface() };
-        let range = out.builder.add_where(&part, |t| !t.iter().all(|&v| hidden[v]));
+        let range = out.builder.add_where(&skin.surface(), |r, v| {
+            on_head[usize::from(r[0])] == wanted && !v.iter().all(|&v| hidden[v])
+        });
         out.add(kind, range, false);
     }
     skin
@@ -234,7 +235,7 @@ fn add_face(
     lod: usize,
 ) {
     let eyes = Evaluated::new(figure, rest, GroupId::Eyes, lod);
-    let range = out.builder.add_where(&eyes.surface(), |_| true);
+    let range = out.builder.add_where(&eyes.surface(), |_, _| true);
     out.add(PartKind::Eyes, range, false);
     if lod == 0 {
         let range = lashes::add(&mut out.builder.mesh, figure, &skin.surface(), &eyes.positions);
@@ -242,7 +243,7 @@ fn add_face(
     }
     if opens_mouth(&person.look) {
         let teeth = Evaluated::new(figure, rest, GroupId::Teeth, lod);
-        let range = out.builder.add_where(&teeth.surface(), |_| true);
+        let range = out.builder.add_where(&teeth.surface(), |_, _| true);
         out.add(PartKind::Teeth, range, true);
     }
 }

@@ -7,7 +7,7 @@
 
 use std::sync::{Arc, OnceLock};
 
-use crate::library::mesh::Mesh;
+use crate::library::mesh::{Mesh, Triangle};
 use crate::scene::Shape;
 
 /// How finely a shape is divided; each level has about a quarter of the triangles of the one above.
@@ -119,10 +119,9 @@ impl Builder {
     fn vertex(&mut self, v: Vertex) -> u32 {
         let length = v.normal.iter().map(|n| n * n).sum::<f64>().sqrt();
         // Adding zero turns -0 into 0, so that equal points have equal bits.
-        self.mesh.positions.push(v.position.map(|x| x as f32 + 0.0));
-        self.mesh.normals.push(v.normal.map(|n| (n / length) as f32 + 0.0));
-        self.mesh.uvs.push(v.uv.map(|x| x as f32));
-        self.mesh.positions.len() as u32 - 1
+        let position = v.position.map(|x| x as f32 + 0.0);
+        let normal = v.normal.map(|n| (n / length) as f32);
+        self.mesh.push(position, normal, v.uv.map(|x| x as f32))
     }
 
     /// A grid of `columns` by `rows` cells. Seen from outside, columns run to the right and rows
@@ -148,7 +147,7 @@ impl Builder {
     fn triangle(&mut self, t: [u32; 3]) {
         let [a, b, c] = t.map(|i| self.mesh.positions[i as usize]);
         if a != b && b != c && c != a {
-            self.mesh.triangles.push(t);
+            self.mesh.triangles.push(Triangle::new(t));
         }
     }
 
@@ -340,7 +339,7 @@ mod tests {
     fn corners(mesh: &Mesh) -> impl Iterator<Item = [DVec3; 3]> + '_ {
         mesh.triangles
             .iter()
-            .map(|t| t.map(|i| Vec3::from_array(mesh.positions[i as usize]).as_dvec3()))
+            .map(|t| t.get().map(|i| Vec3::from_array(mesh.positions[i as usize]).as_dvec3()))
     }
 
     fn volume(mesh: &Mesh) -> f64 {
@@ -398,7 +397,7 @@ mod tests {
         for (shape, detail, mesh) in all() {
             let key = |i: u32| mesh.positions[i as usize].map(f32::to_bits);
             let mut edges: BTreeMap<_, u32> = BTreeMap::new();
-            for t in &mesh.triangles {
+            for t in mesh.triangles.iter().map(|t| t.get()) {
                 for k in 0..3 {
                     *edges.entry((key(t[k]), key(t[(k + 1) % 3]))).or_default() += 1;
                 }
@@ -420,12 +419,12 @@ mod tests {
             assert_eq!(mesh.positions.len(), mesh.normals.len());
             assert_eq!(mesh.positions.len(), mesh.uvs.len());
             for n in &mesh.normals {
-                assert!((Vec3::from_array(*n).length() - 1.0).abs() < 1e-6, "{shape:?}");
+                assert!((Vec3::from_array(n.unit()).length() - 1.0).abs() < 1e-6, "{shape:?}");
             }
             for (t, [a, b, c]) in mesh.triangles.iter().zip(corners(&mesh)) {
                 let face = (b - a).cross(c - a).normalize();
-                for &i in t {
-                    let n = Vec3::from_array(mesh.normals[i as usize]).as_dvec3();
+                for i in t.get() {
+                    let n = Vec3::from_array(mesh.normals[i as usize].unit()).as_dvec3();
                     assert!(n.dot(face) > 0.75, "{shape:?} {detail:?} {n} {face}");
                 }
             }
@@ -455,7 +454,7 @@ mod tests {
         for (shape, detail, mesh) in all() {
             let mut texels = 0.0;
             for (t, [a, b, c]) in mesh.triangles.iter().zip(corners(&mesh)) {
-                let uv = t.map(|i| mesh.uvs[i as usize].map(f64::from));
+                let uv = t.get().map(|i| mesh.uvs[i as usize].map(f64::from));
                 assert!(uv.iter().flatten().all(|x| (-1.2..=3.2).contains(x)), "{shape:?} {uv:?}");
                 let [[ax, ay], [bx, by], [cx, cy]] = uv;
                 let signed = ((bx - ax) * (cy - ay) - (cx - ax) * (by - ay)) / 2.0;

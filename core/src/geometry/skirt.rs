@@ -269,24 +269,23 @@ fn weights(shell: &Shell<'_>, positions: &[Vec3], columns: usize) -> Vec<SkinVer
     let mut dense = Vec::with_capacity(positions.len());
     for ring in positions.chunks(columns) {
         let y = ring[0].y;
-        let near: Vec<usize> = (0..shell.positions.len())
-            .filter(|&i| (shell.positions[i].y - y).abs() < 0.05 && shell.places[i].arm < 0.02)
-            .collect();
+        let beside = |side: f32| {
+            let near = |i: &usize| {
+                let p = shell.positions[*i];
+                (p.y - y).abs() < 0.05 && shell.places[*i].arm < 0.02 && p.x * side > -0.002
+            };
+            Cloud::new(shell.positions, (0..shell.positions.len()).filter(near))
+        };
+        let near = [beside(1.0), beside(-1.0)];
         let t = ((hip.y - y) / (hip.y - ankle.y)).clamp(0.0, 1.0);
         let leg_x = (hip.x + (ankle.x - hip.x) * t).abs().max(0.02);
         for q in ring {
             let beside = (q.x / (BETWEEN * leg_x)).clamp(-1.0, 1.0);
             let front = q.z > hip.z + (ankle.z - hip.z) * t;
             let mut sum = [0.0f32; CLOTH_JOINT_COUNT];
-            for side in [1.0f32, -1.0] {
+            for (side, near) in [1.0f32, -1.0].into_iter().zip(&near) {
                 let (own_share, shared) = ((beside * side).max(0.0), 0.5 - 0.5 * beside.abs());
-                let own = |i: &&usize| shell.positions[**i].x * side > -0.002;
-                let distance = |i: &usize| (shell.positions[*i] - *q).length_squared();
-                let nearest = near
-                    .iter()
-                    .filter(own)
-                    .min_by(|a, b| distance(a).total_cmp(&distance(b)).then(a.cmp(b)));
-                if let Some(&i) = nearest {
+                if let Some(i) = near.nearest(*q) {
                     for (&j, &w) in skin[i].joints.iter().zip(&skin[i].weights) {
                         let (j, w) = (usize::from(j), f32::from(w));
                         sum[j] += own_share * w;
@@ -301,6 +300,47 @@ fn weights(shell: &Shell<'_>, positions: &[Vec3], columns: usize) -> Vec<SkinVer
     }
     soften(&mut dense, columns);
     dense.iter().map(four_largest).collect()
+}
+
+/// Points among which the nearest is looked for, axis by axis: eight are compared at a time.
+struct Cloud {
+    which: Vec<usize>,
+    /// Padded with points that are far from everything.
+    axes: [Vec<f32>; 3],
+}
+
+const LANES: usize = 8;
+
+impl Cloud {
+    fn new(positions: &[Vec3], which: impl Iterator<Item = usize>) -> Self {
+        let which: Vec<usize> = which.collect();
+        let axes = [0, 1, 2].map(|axis| {
+            let own = which.iter().map(|&i| positions[i][axis]);
+            let padding = which.len().next_multiple_of(LANES) - which.len();
+            own.chain(std::iter::repeat_n(1e9, padding)).collect()
+        });
+        Self { which, axes }
+    }
+
+    /// The nearest point, of equally near ones the first.
+    fn nearest(&self, q: Vec3) -> Option<usize> {
+        let (mut best, mut block) = ([f32::MAX; LANES], [0u32; LANES]);
+        let [x, y, z] = &self.axes;
+        let eights = x.as_chunks::<LANES>().0.iter().zip(y.as_chunks::<LANES>().0);
+        for (k, ((x, y), z)) in eights.zip(z.as_chunks::<LANES>().0).enumerate() {
+            for i in 0..LANES {
+                let (dx, dy, dz) = (x[i] - q.x, y[i] - q.y, z[i] - q.z);
+                let d = dx * dx + dy * dy + dz * dz;
+                let nearer = d < best[i];
+                best[i] = if nearer { d } else { best[i] };
+                block[i] = if nearer { k as u32 } else { block[i] };
+            }
+        }
+        let place = |i: usize| block[i] as usize * LANES + i;
+        let order =
+            |a: &usize, b: &usize| best[*a].total_cmp(&best[*b]).then(place(*a).cmp(&place(*b)));
+        (0..LANES).min_by(order).and_then(|i| self.which.get(place(i)).copied())
+    }
 }
 
 /// Means over neighbours on the rings and between them.

@@ -7,7 +7,9 @@
 use glam::DVec3;
 
 use super::body::SOLE_M;
-use super::phenotype::{HEAVIEST, Shape, Sliders, evaluate, face_weights, heights, macro_weights};
+use super::phenotype::{
+    HEAVIEST, Shape, Sliders, evaluate, extent_m, face_weights, heights, macro_weights,
+};
 use crate::library::figure::{Figure, FigureError, GroupId, VOLUME_LOD};
 use crate::scene::Body;
 
@@ -47,19 +49,14 @@ fn of_stature(figure: &Figure, body: &Body, girth: f64, locals: &[(usize, f32)])
         locals: locals.to_vec(),
         ..plain(macro_weights(figure, body, Sliders { muscle, weight: girth, height }))
     };
-    let d = figure.data();
-    let extent = |shape: &Shape| {
-        let top = heights(figure, shape, &d.crown).into_iter().fold(f32::MIN, f32::max);
-        let low = heights(figure, shape, &d.feet).into_iter().fold(f32::MAX, f32::min);
-        (f64::from(top), f64::from(low))
-    };
+    let extent = |shape: &Shape| extent_m(figure, shape).map(f64::from);
     let stature = |height: f64| {
-        let (top, low) = extent(&with(height));
+        let [top, low] = extent(&with(height));
         top - low
     };
     let (short, tall) = (stature(0.0), stature(1.0));
     let mut shape = with(((body.stature_m - short) / (tall - short)).clamp(0.0, 1.0));
-    let (top, low) = extent(&shape);
+    let [top, low] = extent(&shape);
     shape.scale = (body.stature_m / (top - low)) as f32;
     shape.lift_m = SOLE_M - (low as f32) * shape.scale;
     shape

@@ -16,8 +16,9 @@ use crate::library::mesh::SkinVertex;
 const SLICES: usize = 12;
 /// Free space between arm and trunk, for clothes and for what an ellipse leaves out, metres.
 const FREE_M: f64 = 0.008;
-/// A vertex belongs to what has so much of its weight, of 255.
-const MOSTLY: u32 = 150;
+/// A vertex belongs to what has so much of its weight, of 255: half, so that none of the hips belongs
+/// to nothing.
+const MOSTLY: u32 = 128;
 /// An arm is turned by no more than this at a time and in all, degrees.
 const STEP_DEG: f64 = 12.0;
 const STEPS: usize = 20;
@@ -31,6 +32,13 @@ struct Slice {
     center_z_m: f64,
 }
 
+impl Slice {
+    /// Whether nothing was met at its height.
+    const fn is_empty(&self) -> bool {
+        self.half_width_m <= 0.0
+    }
+}
+
 /// Slices of a trunk or a thigh at rest, evenly from a height to another.
 #[derive(Clone, Debug, PartialEq)]
 struct Outline {
@@ -39,7 +47,7 @@ struct Outline {
     slices: [Slice; SLICES],
 }
 
-/// A trunk at rest, from the hips to the armpits, and both thighs.
+/// A trunk at rest, from the hips to the shoulders, and both thighs.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Trunk {
     trunk: Outline,
@@ -97,7 +105,12 @@ impl Outline {
             return None;
         }
         let (i, t) = (place as usize, place.fract());
-        let (a, b) = (self.slices[i], self.slices[i + 1]);
+        let (a, b) = match (self.slices[i], self.slices[i + 1]) {
+            (a, b) if a.is_empty() && b.is_empty() => return None,
+            (a, b) if a.is_empty() => (b, b),
+            (a, b) if b.is_empty() => (a, a),
+            both => both,
+        };
         let mix = |a: f64, b: f64| a + (b - a) * t;
         Some(Slice {
             half_width_m: mix(a.half_width_m, b.half_width_m),
@@ -137,7 +150,7 @@ impl Trunk {
     ) -> Self {
         let hip_m = heads_m[Side::Left.joint(Limb::UpLeg)].y;
         let armpit_m = heads_m[Side::Left.joint(Limb::Arm)].y;
-        let heights = [hip_m, hip_m + 0.92 * (armpit_m - hip_m)];
+        let heights = [hip_m, hip_m + 1.05 * (armpit_m - hip_m)];
         let thigh = |side: Side| {
             let (hip, knee) = (side.joint(Limb::UpLeg), side.joint(Limb::Leg));
             let (hip_m, knee_m) = (heads_m[hip].y, heads_m[knee].y);
@@ -146,7 +159,10 @@ impl Trunk {
         };
         Self {
             thighs: Side::BOTH.map(thigh),
-            trunk: Outline::new(heights, skin, |joint| joint <= trunk::SPINE2),
+            // Above their joints the thighs are the widest part of the hips.
+            trunk: Outline::new(heights, skin, |joint| {
+                joint <= trunk::SPINE2 || Side::BOTH.iter().any(|s| s.joint(Limb::UpLeg) == joint)
+            }),
             arm_radius_m,
         }
     }

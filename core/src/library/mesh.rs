@@ -8,14 +8,14 @@
 pub struct Mesh {
     /// Metres, model space.
     pub positions: Vec<[f32; 3]>,
-    /// Unit length.
-    pub normals: Vec<[f32; 3]>,
+    /// Away from the surface.
+    pub normals: Vec<Normal>,
     /// Texture coordinates, v down, wrapping.
     pub uvs: Vec<[f32; 2]>,
     /// Joints and weights of each vertex, or empty.
     pub skin: Vec<SkinVertex>,
-    /// Vertex indices, one triangle each.
-    pub triangles: Vec<[u32; 3]>,
+    /// One triangle each.
+    pub triangles: Vec<Triangle>,
     /// Centre of a sphere round all vertices at rest, model space.
     pub center: [f32; 3],
     /// Radius of that sphere, metres.
@@ -26,9 +26,16 @@ impl Mesh {
     /// Bytes that the arrays occupy.
     #[must_use]
     pub const fn size_bytes(&self) -> usize {
-        let vectors = self.positions.capacity() + self.normals.capacity();
-        let small = self.uvs.capacity() + self.skin.capacity();
-        12 * (vectors + self.triangles.capacity()) + 8 * small
+        let eights = self.uvs.capacity() + self.skin.capacity() + self.triangles.capacity();
+        12 * self.positions.capacity() + 8 * eights + 4 * self.normals.capacity()
+    }
+
+    /// Adds a vertex without skin weights; gives back its index.
+    pub fn push(&mut self, position: [f32; 3], unit_normal: [f32; 3], uv: [f32; 2]) -> u32 {
+        self.positions.push(position);
+        self.normals.push(Normal::new(unit_normal));
+        self.uvs.push(uv);
+        self.positions.len() as u32 - 1
     }
 
     /// Gives back memory beyond what the arrays need.
@@ -41,6 +48,77 @@ impl Mesh {
     }
 }
 
+/// Three vertex indices in 8 bytes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(transparent)]
+pub struct Triangle(u64);
+
+impl Triangle {
+    /// Most vertices that triangles can name.
+    pub const MAX_VERTICES: u32 = 1 << 21;
+
+    /// A triangle of three vertices, each below [`Triangle::MAX_VERTICES`].
+    ///
+    /// # Panics
+    /// Where one is not.
+    #[must_use]
+    pub const fn new([a, b, c]: [u32; 3]) -> Self {
+        assert!((a | b | c) < Self::MAX_VERTICES, "a mesh has at most two million vertices");
+        Self(a as u64 | (b as u64) << 21 | (c as u64) << 42)
+    }
+
+    /// The vertices, in order.
+    #[must_use]
+    #[inline(always)]
+    pub const fn get(self) -> [u32; 3] {
+        const LOW: u64 = Triangle::MAX_VERTICES as u64 - 1;
+        [(self.0 & LOW) as u32, (self.0 >> 21 & LOW) as u32, (self.0 >> 42) as u32]
+    }
+}
+
+/// A direction in 4 bytes: the octahedron |x| + |y| + |z| = 1 unfolded onto a square (Meyer et al.,
+/// "On floating-point normal vectors", EGSR 2010). Within 0.004 degrees of what was meant, and
+/// exact along the axes.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[repr(transparent)]
+pub struct Normal([i16; 2]);
+
+impl Normal {
+    /// The nearest to a unit vector, or nearly.
+    #[must_use]
+    pub fn new([x, y, z]: [f32; 3]) -> Self {
+        let sum = (x.abs() + y.abs() + z.abs()).max(f32::MIN_POSITIVE);
+        let (x, y) = (x / sum, y / sum);
+        let signed = |size: f32, of: f32| if of < 0.0 { -size } else { size };
+        // The lower half is folded outwards over the upper half's edges.
+        let flat =
+            if z < 0.0 { [signed(1.0 - y.abs(), x), signed(1.0 - x.abs(), y)] } else { [x, y] };
+        Self(flat.map(|v| {
+            let units = v * 32_767.0;
+            (if units < 0.0 { units - 0.5 } else { units + 0.5 }) as i16
+        }))
+    }
+
+    /// A vector of this direction, 0.57 to 1 long: what turns it scales it as well.
+    #[must_use]
+    #[inline(always)]
+    pub fn direction(self) -> [f32; 3] {
+        let [x, y] = self.0.map(|v| f32::from(v) * (1.0 / 32_767.0));
+        let z = 1.0 - x.abs() - y.abs();
+        let fold = (-z).max(0.0);
+        let inwards = |v: f32| if v < 0.0 { v + fold } else { v - fold };
+        [inwards(x), inwards(y), z]
+    }
+
+    /// The unit vector.
+    #[must_use]
+    pub fn unit(self) -> [f32; 3] {
+        let d = self.direction();
+        let length = (d[0] * d[0] + d[1] * d[1] + d[2] * d[2]).sqrt();
+        d.map(|v| v / length)
+    }
+}
+
 /// Up to four joints of one vertex.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[repr(C)]
@@ -49,4 +127,44 @@ pub struct SkinVertex {
     pub joints: [u8; 4],
     /// Weights in 1/255; they sum to 255.
     pub weights: [u8; 4],
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn normals_come_back_within_a_few_thousandths_of_a_degree() {
+        for axis in 0..3 {
+            for sign in [1.0, -1.0] {
+                let mut unit = [0.0; 3];
+                unit[axis] = sign;
+                assert_eq!(Normal::new(unit).unit(), unit);
+            }
+        }
+        for i in 0..2000 {
+            let (a, b) = (f64::from(i) * 2.399_963, 1.0 - f64::from(i) / 999.5);
+            let flat = (1.0 - b * b).max(0.0).sqrt();
+            let unit = [flat * libm::cos(a), b, flat * libm::sin(a)];
+            let normal = Normal::new(unit.map(|v| v as f32));
+            let back = normal.unit().map(f64::from);
+            let off: f64 = unit.iter().zip(back).map(|(u, v)| (u - v) * (u - v)).sum();
+            assert!(off.sqrt().to_degrees() < 0.004, "{unit:?} {back:?}");
+            let length = normal.direction().map(|v| v * v).iter().sum::<f32>().sqrt();
+            assert!((0.57..=1.0001).contains(&length), "{length}");
+        }
+    }
+
+    #[test]
+    fn triangles_come_back() {
+        for t in [[0, 1, 2], [90_600, 5, 70_000], [(1 << 21) - 1; 3]] {
+            assert_eq!(Triangle::new(t).get(), t);
+        }
+    }
+
+    #[test]
+    #[should_panic(expected = "two million")]
+    fn a_vertex_that_has_no_room_is_refused() {
+        let _ = Triangle::new([0, 1 << 21, 0]);
+    }
 }

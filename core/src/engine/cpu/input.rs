@@ -159,7 +159,7 @@ fn check_draw(list: &DrawList, index: usize, draw: &Draw) -> Result<(), EngineEr
     if triangles.is_empty() {
         return Ok(());
     }
-    let highest = triangles.iter().fold([0; 3], |most, t| largest(most, *t));
+    let highest = triangles.iter().fold([0; 3], |most, t| largest(most, t.get()));
     let highest = highest.into_iter().max().unwrap_or(0);
     within("vertex in the mesh of draw", index, highest.into(), mesh.positions.len())
 }

@@ -9,6 +9,7 @@ use super::samples::{Layout, RASTER_BITS, TILE};
 use super::shadow::SunAxes;
 use super::simd::{I32x8, LANES, Mask8, kernel, unzipped};
 use super::{clip, shadow};
+use crate::library::mesh;
 
 /// Triangles up to this size have edge functions below 2^31 all over a tile: with extent E and
 /// tile side T in pixels, the largest is 2 E (E + T) 2^14, for E = 192 and T = 34 some 1.4e9.
@@ -71,13 +72,13 @@ impl<'a> Target<'a> {
 
 kernel! {
     /// Culls, clips and bins the triangles of a chunk.
-    fn set_up(chunk: &mut Chunk, mesh_triangles: &[[u32; 3]], target: &Target<'_>) = set_up_body
+    fn set_up(chunk: &mut Chunk, mesh_triangles: &[mesh::Triangle], target: &Target<'_>) = set_up_body
 }
 
 #[inline(always)]
 fn set_up_body<const AVX2: bool>(
     chunk: &mut Chunk,
-    mesh_triangles: &[[u32; 3]],
+    mesh_triangles: &[mesh::Triangle],
     target: &Target<'_>,
 ) {
     chunk.triangles.clear();
@@ -90,7 +91,7 @@ fn set_up_body<const AVX2: bool>(
         set_up_eight::<AVX2>(chunk, triangles, target);
     }
     for triangle in rest {
-        set_up_one(chunk, triangle.map(|v| v + chunk.first_vertex), target);
+        set_up_one(chunk, triangle.get().map(|v| v + chunk.first_vertex), target);
     }
     clip::add_crossing(chunk, target);
     if let Some(sun) = target.sun {
@@ -115,10 +116,10 @@ fn set_up_one(chunk: &mut Chunk, corners: [u32; 3], target: &Target<'_>) {
 #[inline(always)]
 fn set_up_eight<const AVX2: bool>(
     chunk: &mut Chunk,
-    triangles: &[[u32; 3]; LANES],
+    triangles: &[mesh::Triangle; LANES],
     target: &Target<'_>,
 ) {
-    let corners = triangles.map(|t| t.map(|v| v + chunk.first_vertex));
+    let corners = triangles.map(|t| t.get().map(|v| v + chunk.first_vertex));
     let eight = Eight::<AVX2>::new(&corners, target);
     let culled = eight.cull(chunk, target);
     let mut left = culled.kept | eight.special;

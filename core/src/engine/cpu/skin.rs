@@ -214,7 +214,7 @@ fn move_body<const AVX2: bool, const NORMALS: bool>(
                 p[axis][lane] = moved[axis];
             }
             if NORMALS {
-                let moved = transform(normal, mesh.normals[i], 0.0);
+                let moved = transform(normal, mesh.normals[i].direction(), 0.0);
                 for axis in 0..3 {
                     n[axis][lane] = moved[axis];
                 }

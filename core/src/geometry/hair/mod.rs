@@ -32,7 +32,7 @@ use super::body::RestBody;
 use super::garment::step;
 use crate::base::hash::Hasher;
 use crate::library::figure::Figure;
-use crate::library::mesh::{Mesh, SkinVertex};
+use crate::library::mesh::{Mesh, SkinVertex, Triangle};
 use crate::scene::{HairStyle, HeadwearKind, Person};
 
 /// Locks by level of detail: share of the finest count, width, and share of the points.
@@ -207,9 +207,10 @@ impl Grower<'_> {
             (0..=ROWS).filter(|r| (ROWS - r).is_multiple_of(skip) || *r == 0).collect();
         let mut points = Vec::with_capacity(rows.len() * COLUMNS);
         let mut uvs = Vec::with_capacity(points.capacity());
+        let wander: Vec<f32> = (0..=COLUMNS).step_by(skip).map(|c| self.wander(c)).collect();
         for &row in &rows {
-            for column in (0..=COLUMNS).step_by(skip) {
-                let root = self.ragged(row, column);
+            for (column, wander) in (0..=COLUMNS).step_by(skip).zip(&wander) {
+                let root = self.ragged(row, column, *wander);
                 points.push(root.p + root.n * (self.cap_m(&root) - SUNK_M * self.scale()));
                 let along = (root.local.y - 0.85).abs() * UV_PER_M[1] * 1.3;
                 uvs.push([column as f32 * 4.0 / COLUMNS as f32, along]);
@@ -222,16 +223,19 @@ impl Grower<'_> {
             // The bald crown lies under the skin.
             let local = |v: u32| self.head.scalp.frame.local(points[v as usize - first]);
             let tail = mesh.triangles.split_off(start);
-            let grows = |t: &[u32; 3]| t.iter().any(|&v| style::wreath(local(v)) > 0.0);
+            let grows = |t: &Triangle| t.get().iter().any(|&v| style::wreath(local(v)) > 0.0);
             mesh.triangles.extend(tail.into_iter().filter(grows));
         }
     }
 
+    /// How far a column's end is moved inwards, 0..1.
+    fn wander(&self, column: usize) -> f32 {
+        0.5 + 0.5 * lump(self.head.scalp.root(ROWS, column).local / 0.011, self.head.seed)
+    }
+
     /// A root of the grid; near the hairline it is moved inwards, more here and less there.
-    fn ragged(&self, row: usize, column: usize) -> Root {
+    fn ragged(&self, row: usize, column: usize, wander: f32) -> Root {
         let near = (row as f32 / ROWS as f32).powi(4);
-        let wander =
-            0.5 + 0.5 * lump(self.head.scalp.root(ROWS, column).local / 0.011, self.head.seed);
         self.head.scalp.at(row as f32 - self.form.cap.ragged * 1.6 * wander * near, column as f32)
     }
 
@@ -447,9 +451,9 @@ pub(super) fn add_grid(
             let v = |r: usize, c: usize| first + (r * across + c) as u32;
             let [a, b] = [v(row - 1, column - 1), v(row - 1, column)];
             let [d, c] = [v(row, column - 1), v(row, column)];
-            mesh.triangles.push([a, d, c]);
+            mesh.triangles.push(Triangle::new([a, d, c]));
             if points[(row - 1) * across + column - 1] != points[(row - 1) * across + column] {
-                mesh.triangles.push([a, c, b]);
+                mesh.triangles.push(Triangle::new([a, c, b]));
             }
         }
     }

@@ -8,7 +8,7 @@
 use glam::Vec3;
 
 use super::scalp::Frame;
-use crate::geometry::cut::smooth_normals;
+use crate::geometry::cut::net_normals;
 use crate::geometry::garment::step;
 use crate::library::figure::{Figure, GroupId, LOD_COUNT};
 
@@ -30,8 +30,12 @@ pub(in crate::geometry) struct Near {
     size: [usize; 3],
     /// Where each cell's samples begin.
     start: Vec<u32>,
-    samples: Vec<Sample>,
+    /// The samples' places and normals, axis by axis, and some that pad: eight are read at a time.
+    places: [Vec<f32>; 3],
+    normals: [Vec<f32>; 3],
 }
+
+const LANES: usize = 8;
 
 impl Near {
     /// Skin above a height on the template, from the skin's vertices at a level of detail; below the
@@ -47,11 +51,10 @@ impl Near {
         let group = figure.group(GroupId::Skin);
         let level = &group.lods[lod];
         let at = &skin[..level.vertices as usize];
-        let normals = smooth_normals(at, &group.render, &level.triangles);
+        let net = figure.net(GroupId::Skin, lod);
+        let normals = net_normals(at, net);
         let mut used = vec![false; at.len()];
-        for r in &level.triangles {
-            used[usize::from(group.render[usize::from(*r)])] = true;
-        }
+        net.triangles.as_flattened().iter().for_each(|v| used[usize::from(*v)] = true);
         let t = figure.template();
         let mut samples = Vec::new();
         for (i, v) in figure.vertices(GroupId::Skin, level.vertices).enumerate() {
@@ -69,14 +72,22 @@ impl Near {
         let low = samples.iter().fold(Vec3::splat(f32::MAX), |a, s| a.min(s.p));
         let high = samples.iter().fold(Vec3::splat(f32::MIN), |a, s| a.max(s.p));
         let size = ((high - low) / cell_m).to_array().map(|x| (x.max(0.0) as usize).min(255) + 1);
-        let mut out = Self { low, cell_m, size, start: Vec::new(), samples: Vec::new() };
+        let (places, normals) = Default::default();
+        let mut out = Self { low, cell_m, size, start: Vec::new(), places, normals };
         let cell = |s: &Sample| out.index(out.cell(s.p).map(|x| x as usize));
         let mut keyed: Vec<(usize, Sample)> = samples.into_iter().map(|s| (cell(&s), s)).collect();
         keyed.sort_by_key(|k| k.0);
         let count = size.iter().product::<usize>();
         let start = (0..=count).map(|c| keyed.partition_point(|k| k.0 < c) as u32).collect();
         out.start = start;
-        out.samples = keyed.into_iter().map(|k| k.1).collect();
+        for axis in 0..3 {
+            let padded = |of: fn(&Sample) -> Vec3| {
+                let own = keyed.iter().map(|k| of(&k.1)[axis]);
+                own.chain([0.0; LANES]).collect()
+            };
+            out.places[axis] = padded(|s| s.p);
+            out.normals[axis] = padded(|s| s.n);
+        }
         out
     }
 
@@ -99,7 +110,7 @@ impl Near {
         let reach = self.cell_m * cells as f32;
         let (reach2, soft2) = (reach * reach, 0.1 * self.cell_m * self.cell_m);
         let center = self.cell(p);
-        let (mut sum, mut distance, mut normal) = (0.0f32, 0.0f32, Vec3::ZERO);
+        let mut sums = Sums::default();
         let ends = |i: usize| {
             let (a, b) = (center[i] - cells, center[i] + cells);
             (a.max(0) as usize, (b.min(self.size[i] as i32 - 1) + 1).max(0) as usize)
@@ -112,22 +123,51 @@ impl Near {
                 }
                 let from = self.start[self.index([x, y, zs.0])] as usize;
                 let to = self.start[self.index([x, y, zs.1 - 1]) + 1] as usize;
-                for s in &self.samples[from..to] {
-                    let away = p - s.p;
-                    let d2 = away.length_squared();
-                    if d2 < reach2 {
-                        let near = 1.0 - d2 / reach2;
-                        let w = near * near / (d2 + soft2);
-                        sum += w;
-                        distance += w * away.dot(s.n);
-                        normal += s.n * w;
-                    }
+                for first in (from..to).step_by(LANES) {
+                    self.add_eight(&mut sums, p, (first, to - first), (1.0 / reach2, soft2));
                 }
             }
         }
-        (sum > 0.0).then(|| (distance / sum, normal.normalize_or(Vec3::Y)))
+        let [weight, distance, x, y, z] = sums.0.map(|lanes| lanes.iter().sum::<f32>());
+        let normal = Vec3::new(x, y, z);
+        (weight > 0.0).then(|| (distance / weight, normal.normalize_or(Vec3::Y)))
+    }
+
+    /// Adds the samples from `first` on, at most `count` and eight, with their weights. Lanes are
+    /// plain arrays that the compiler makes vectors of.
+    #[inline(always)]
+    fn add_eight(
+        &self,
+        sums: &mut Sums,
+        p: Vec3,
+        (first, count): (usize, usize),
+        (per_reach2, soft2): (f32, f32),
+    ) {
+        let eight = |of: &[f32]| -> [f32; LANES] {
+            let mut out = [0.0; LANES];
+            out.copy_from_slice(&of[first..first + LANES]);
+            out
+        };
+        let [x, y, z] = [0, 1, 2].map(|axis| eight(&self.places[axis]));
+        let n = [0, 1, 2].map(|axis| eight(&self.normals[axis]));
+        for i in 0..LANES {
+            let (dx, dy, dz) = (p.x - x[i], p.y - y[i], p.z - z[i]);
+            let d2 = dx * dx + dy * dy + dz * dz;
+            let near = 1.0 - d2 * per_reach2;
+            let counts = near > 0.0 && i < count;
+            let w = if counts { near * near / (d2 + soft2) } else { 0.0 };
+            sums.0[0][i] += w;
+            sums.0[1][i] += w * (dx * n[0][i] + dy * n[1][i] + dz * n[2][i]);
+            sums.0[2][i] += w * n[0][i];
+            sums.0[3][i] += w * n[1][i];
+            sums.0[4][i] += w * n[2][i];
+        }
     }
 }
+
+/// Weights, weighted distances and the weighted normals' three axes, lane by lane.
+#[derive(Default)]
+struct Sums([[f32; LANES]; 5]);
 
 /// Mouth cavity and eye sockets on the template.
 fn is_inside(p: Vec3) -> bool {

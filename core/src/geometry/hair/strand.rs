@@ -5,7 +5,7 @@ use glam::Vec3;
 use super::near::Near;
 use super::scalp::{Frame, Root};
 use crate::geometry::garment::step;
-use crate::library::mesh::{Mesh, SkinVertex};
+use crate::library::mesh::{Mesh, SkinVertex, Triangle};
 
 /// Repeats of the hair's texture over a metre across and along the strands, before the surface's
 /// own repeats.
@@ -44,6 +44,11 @@ pub(in crate::geometry) struct Path {
 }
 
 impl Path {
+    /// An empty line with room for so many points.
+    fn with_room(points: usize) -> Self {
+        Self { points: Vec::with_capacity(points), outward: Vec::with_capacity(points) }
+    }
+
     fn push(&mut self, p: Vec3, n: Vec3) {
         self.points.push(p);
         self.outward.push(n);
@@ -56,7 +61,7 @@ impl Path {
 
     /// The same line by so many points at equal distances.
     pub fn resampled(&self, count: usize) -> Self {
-        let mut out = Self::default();
+        let mut out = Self::with_room(count);
         let total = self.length();
         let (mut i, mut before) = (0, 0.0);
         for k in 0..count {
@@ -135,7 +140,7 @@ impl Comb<'_> {
         clear: impl Fn(f32) -> f32,
     ) -> Path {
         const MOST: usize = 48;
-        let mut path = Path::default();
+        let mut path = Path::with_room(MOST + 1);
         let (mut p, mut n) = (root.p + root.n * start_m, root.n);
         path.push(p, n);
         let mut near = Some((start_m, root.n));
@@ -224,7 +229,7 @@ impl Ribbon {
             }
             if i == last {
                 let tip = push(mesh, p, up, uv(0.0), joints);
-                mesh.triangles.push([before[0], before[1], tip]);
+                mesh.triangles.push(Triangle::new([before[0], before[1], tip]));
                 return;
             }
             let half = self.half(i as f32 / last as f32);
@@ -233,8 +238,8 @@ impl Ribbon {
                 push(mesh, p + side * (s * half), n, uv(s * half), joints)
             });
             if i > 0 {
-                mesh.triangles.push([before[0], before[1], pair[1]]);
-                mesh.triangles.push([before[0], pair[1], pair[0]]);
+                mesh.triangles.push(Triangle::new([before[0], before[1], pair[1]]));
+                mesh.triangles.push(Triangle::new([before[0], pair[1], pair[0]]));
             }
             before = pair;
         }
@@ -262,7 +267,7 @@ impl Ribbon {
             let tip = end + half * (0.9 * (k as f32 - 1.0)) - way * short;
             let along = uv[1] + way.length() * (1.0 - short) * UV_PER_M[1];
             let tip = push(mesh, tip, up, [uv[0] + k as f32 * 0.02, along], joints);
-            mesh.triangles.push([root[0], root[1], tip]);
+            mesh.triangles.push(Triangle::new([root[0], root[1], tip]));
         }
     }
 }
@@ -275,11 +280,8 @@ pub(in crate::geometry) fn push(
     uv: [f32; 2],
     skin: SkinVertex,
 ) -> u32 {
-    mesh.positions.push(p.to_array());
-    mesh.normals.push(n.to_array());
-    mesh.uvs.push(uv);
     mesh.skin.push(skin);
-    mesh.positions.len() as u32 - 1
+    mesh.push(p.to_array(), n.to_array(), uv)
 }
 
 /// Adds a tube round a path, its ends drawn together; radius by the share of the way, metres.
@@ -313,7 +315,7 @@ pub(in crate::geometry) fn tube(
     for i in 0..last {
         for k in 0..sides {
             let [a, b, c, d] = [at(i, k), at(i, k + 1), at(i + 1, k + 1), at(i + 1, k)];
-            mesh.triangles.extend([[a, b, c], [a, c, d]]);
+            mesh.triangles.extend([[a, b, c], [a, c, d]].map(Triangle::new));
         }
     }
 }

@@ -6,6 +6,7 @@
 //! layout over a whole texture: so its maps are sharp where people look, and small. What is
 //! painted stands in [`super::complexion`], [`super::whiskers`] and [`super::seams`].
 
+use std::ops::Range;
 use std::sync::Arc;
 
 use super::data::{FigureData, Group, LIMB_UNIT};
@@ -302,22 +303,59 @@ fn raster(
         if area.abs() < 1e-9 {
             continue;
         }
-        // A margin of one texel round each triangle, which whoever comes later leaves alone.
+        // A margin of about a texel round each triangle, which whoever comes later leaves alone.
         let range = |k: usize| {
             let low = a[k].min(b[k]).min(c[k]).floor() - 1.0;
             let high = a[k].max(b[k]).max(c[k]).ceil() + 1.0;
             low.max(0.0) as usize..(high.max(0.0) as usize).min(side)
         };
+        let shares = [(b, c), (c, a), (a, b)].map(|(p, q)| Share::new(p, q, area));
+        let columns = range(0);
         for y in range(1) {
-            for x in range(0) {
-                let q = [x as f32 + 0.5, y as f32 + 0.5];
-                let w = [cross(b, c, q) / area, cross(c, a, q) / area, cross(a, b, q) / area];
+            let at_y = y as f32 + 0.5;
+            for x in shares.iter().fold(columns.clone(), |span, share| share.span(at_y, span)) {
+                let w = shares.map(|share| share.at(x as f32 + 0.5, at_y));
                 let i = y * side + x;
-                if !done[i] && w.iter().all(|&w| w >= -0.05) {
+                if !done[i] && w.iter().all(|&w| w >= -MARGIN) {
                     done[i] = true;
                     f(i, [(v[0], w[0]), (v[1], w[1]), (v[2], w[2])]);
                 }
             }
+        }
+    }
+}
+
+/// How far outside a triangle its texels reach, as a share of its height.
+const MARGIN: f32 = 0.05;
+
+/// A corner's share at a place: 1 at the corner, 0 on the edge from `p` to `q`.
+#[derive(Clone, Copy)]
+struct Share {
+    p: [f32; 2],
+    /// What a texel to the right and a texel down add.
+    by: [f32; 2],
+}
+
+impl Share {
+    fn new(p: [f32; 2], q: [f32; 2], area: f32) -> Self {
+        Self { p, by: [(p[1] - q[1]) / area, (q[0] - p[0]) / area] }
+    }
+
+    fn at(&self, x: f32, y: f32) -> f32 {
+        self.by[0] * (x - self.p[0]) + self.by[1] * (y - self.p[1])
+    }
+
+    /// The columns of a row in which the share may be large enough, one more at either end.
+    fn span(&self, y: f32, columns: Range<usize>) -> Range<usize> {
+        let [right, down] = self.by;
+        if right.abs() < 1e-6 {
+            return columns;
+        }
+        let end = self.p[0] - (MARGIN + down * (y - self.p[1])) / right - 0.5;
+        if right > 0.0 {
+            columns.start.max((end - 1.0).max(0.0) as usize)..columns.end
+        } else {
+            columns.start..columns.end.min((end + 2.0).max(0.0) as usize)
         }
     }
 }

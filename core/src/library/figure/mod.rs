@@ -8,19 +8,25 @@ use std::ops::Range;
 use std::sync::{Arc, LazyLock, OnceLock};
 
 mod complexion;
+mod creases;
 pub mod data;
 mod eye;
 mod maps;
+mod net;
 pub mod predict;
 mod seams;
 mod stream;
+mod tallness;
 mod whiskers;
 
 pub use complexion::upper_lid_y;
+pub use creases::{ARM_M, LEG_M};
 pub use data::{FigureData, Group, GroupId, LOD_COUNT, Lod};
-use data::{KEYPOINT_VERTICES, MAX_FACTORS};
+use data::{GROUP_COUNT, KEYPOINT_VERTICES, MAX_FACTORS};
 pub use maps::{CLOTH_REPEAT, Freckles, NEUTRAL_TINT, SKIRT};
+pub use net::{Neighbour, Net};
 pub use seams::Sewn;
+pub use tallness::Tallness;
 pub use whiskers::{ScalpShade, Whiskers, beard, wreath};
 
 use glam::DVec3;
@@ -70,6 +76,10 @@ pub struct Figure {
     /// Texture coordinates of the garment shell's render vertices.
     shell_uvs: Vec<f32>,
     painted: Painted,
+    /// Of each group and level of detail, made when first asked for.
+    nets: [[OnceLock<Net>; LOD_COUNT]; GROUP_COUNT],
+    tallness: OnceLock<Tallness>,
+    creases: OnceLock<Vec<f32>>,
     eye_mask: Arc<Texture>,
     reach_margin_m: [f64; JOINT_COUNT],
 }
@@ -151,8 +161,19 @@ impl Figure {
         let eye_mask = Arc::new(eye::mask());
         let (skin_uvs, on_head) = maps::layout(&data);
         let shell_uvs = maps::shell_layout(&data);
-        let painted = Painted::default();
-        Ok(Self { data, skin, skin_uvs, on_head, shell_uvs, painted, eye_mask, reach_margin_m })
+        Ok(Self {
+            data,
+            skin,
+            skin_uvs,
+            on_head,
+            shell_uvs,
+            painted: Painted::default(),
+            nets: Default::default(),
+            tallness: OnceLock::new(),
+            creases: OnceLock::new(),
+            eye_mask,
+            reach_margin_m,
+        })
     }
 
     /// The raw tables.
@@ -165,6 +186,25 @@ impl Figure {
     #[must_use]
     pub fn group(&self, id: GroupId) -> &Group {
         &self.data.groups[id as usize]
+    }
+
+    /// How the vertices of a group are joined at a level of detail.
+    #[must_use]
+    pub fn net(&self, id: GroupId, lod: usize) -> &Net {
+        self.nets[id as usize][lod].get_or_init(|| Net::new(self.group(id), lod))
+    }
+
+    /// Heights of the vertices that decide how tall a body is.
+    #[must_use]
+    pub fn tallness(&self) -> &Tallness {
+        self.tallness.get_or_init(|| Tallness::new(self))
+    }
+
+    /// Height of the folds of worn cloth at the garment shell's vertices, 0..1: where limbs bend
+    /// and where cloth piles up.
+    #[must_use]
+    pub fn creases(&self) -> &[f32] {
+        self.creases.get_or_init(|| creases::creases(&self.data))
     }
 
     /// The first `count` vertices of a group among all vertices.
@@ -386,25 +426,9 @@ fn reach_margins_m(data: &FigureData, skin: &[SkinVertex]) -> [f64; JOINT_COUNT]
     std::array::from_fn(|j| all[j] - few[j])
 }
 
-/// All levels of a mask by 2x2 means, rounded to nearest.
+/// A mask with all its levels.
 fn with_mips(log2_size: u32, top: Vec<u32>) -> Texture {
-    let mut texels = top;
-    for level in 1..=log2_size {
-        let (from, size) =
-            (Texture::level_offset(log2_size, level - 1), 1usize << (log2_size - level));
-        for y in 0..size {
-            for x in 0..size {
-                let at = |dx, dy| texels[from + (2 * y + dy) * 2 * size + 2 * x + dx];
-                let four = [at(0, 0), at(1, 0), at(0, 1), at(1, 1)];
-                let mean = (0..4).fold(0, |out, c| {
-                    let sum: u32 = four.iter().map(|t| (t >> (8 * c)) & 255).sum();
-                    out | ((sum + 2) / 4) << (8 * c)
-                });
-                texels.push(mean);
-            }
-        }
-    }
-    Texture { log2_size, encoding: Encoding::Linear, texels }
+    Texture::from_level0(log2_size, Encoding::Linear, top)
 }
 
 #[cfg(test)]

@@ -5,6 +5,7 @@
 //! for everybody, by [`super::maps`].
 
 use super::complexion::step;
+use super::creases::ARM_M;
 
 /// Kinds of garments that are sewn alike.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -48,8 +49,6 @@ pub(super) struct Place {
     pub leg: f32,
 }
 
-/// Length of the template's arm, metres.
-const ARM_M: f32 = 0.42;
 /// Distances of buttons below one another, and where the first sits.
 const BUTTON_M: f32 = 0.072;
 const FIRST_BUTTON_Y: f32 = 0.508;
@@ -158,15 +157,23 @@ fn buttons([x, y]: [f32; 2], first_y: f32, count: usize, size: f32) -> f32 {
     let below = first_y - y;
     let k = (below / BUTTON_M + 0.5).floor().clamp(0.0, count as f32 - 1.0);
     let dy = below - k * BUTTON_M;
+    if x.abs().max(dy.abs()) >= 0.0060 * size {
+        return 0.0;
+    }
     step(0.0060 * size, 0.0040 * size, (x * x + dy * dy).sqrt())
 }
 
 /// 1 on a line, 0 from so far beside it on.
 fn line(distance: f32, half: f32) -> f32 {
-    step(half, 0.4 * half, distance)
+    // Most places are off most lines.
+    if distance >= half { 0.0 } else { step(half, 0.4 * half, distance) }
 }
 
 fn segment([x, y]: [f32; 2], a: [f32; 2], b: [f32; 2], half: f32) -> f32 {
+    let off = |v: f32, a: f32, b: f32| v < a.min(b) - half || v > a.max(b) + half;
+    if off(x, a[0], b[0]) || off(y, a[1], b[1]) {
+        return 0.0;
+    }
     let (dx, dy) = (b[0] - a[0], b[1] - a[1]);
     let t = (((x - a[0]) * dx + (y - a[1]) * dy) / (dx * dx + dy * dy)).clamp(0.0, 1.0);
     let (ex, ey) = (x - a[0] - t * dx, y - a[1] - t * dy);
@@ -174,5 +181,6 @@ fn segment([x, y]: [f32; 2], a: [f32; 2], b: [f32; 2], half: f32) -> f32 {
 }
 
 fn spot(d: [f32; 3], radius: f32) -> f32 {
-    step(radius * radius, 0.0, d[0] * d[0] + d[1] * d[1] + d[2] * d[2])
+    let far = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
+    if far >= radius * radius { 0.0 } else { step(radius * radius, 0.0, far) }
 }
