@@ -8,10 +8,11 @@ use std::ops::Range;
 use glam::Vec3;
 
 use super::body::{RestBody, SOLE_M};
-use super::cut::{Builder, Refined, Rim, normals_within};
+use super::cut::{Builder, Rim, normals_within};
 use super::garment::{self, Cuts, DEEP_M, Fields, NOT_WORN, Piece, Place, step};
 use super::layers::{self, Shell, raised};
 use super::person::{Evaluated, PartKind, Parts};
+use super::refine::Refined;
 use super::skirt::{self, Level, Skirt};
 use crate::library::figure::{Figure, GroupId};
 use crate::scene::{BottomKind, ShoeKind};
@@ -233,7 +234,7 @@ fn add_feet(out: &mut Parts, cutter: &Cutter<'_>, worn: &Worn) {
         }
         let normals = normals_within(&worn.feet.shoes, shell.net, &field);
         let part = Refined::new(&cutter.body.with(layer, &normals), &field);
-        let range = out.builder.add_cut(&part.surface(), part.field(), rim);
+        let range = out.builder.add_cut(&part.surface(), &part.field, rim);
         out.add(kind, range, true);
     }
 }
@@ -297,6 +298,6 @@ impl Cutter<'_> {
         if self.lod == 0 {
             part.refine(|a, b| self.field(piece, Place::between(shell.places[a], shell.places[b])));
         }
-        Added { triangles: builder.add_cut(&part.surface(), part.field(), rim), normals }
+        Added { triangles: builder.add_cut(&part.surface(), &part.field, rim), normals }
     }
 }

@@ -10,7 +10,7 @@
 //! | `solve` | sliders of the body model from stature and body mass index |
 //! | [`person`] | a dressed person at rest: skin, eyes, hair and clothes as one mesh |
 //! | [`surface`] | what the parts of a person look like |
-//! | `garment`, `cut` | clothes, cut from a shell along scalar fields |
+//! | `garment`, `refine`, `cut`, `lookup` | clothes, cut from a shell along scalar fields |
 //! | `clothes`, `layers`, `drape`, `skirt` | how garments hang, one over the other |
 //! | `hair`, `beard`, `lashes`, `headwear`, `glasses` | what grows and sits on the head |
 //! | [`skeleton`], [`pose`] | joints, and clips and poses retargeted to a body |
@@ -37,6 +37,7 @@ pub mod person;
 pub mod phenotype;
 pub mod points;
 pub mod pose;
+mod refine;
 mod settle;
 pub mod shape;
 pub mod skeleton;
