@@ -6,7 +6,7 @@
 
 @group(0) @binding(1) var<storage, read> raster_target: Target;
 @group(0) @binding(2) var<storage, read_write> primitives: array<Primitive>;
-@group(0) @binding(3) var<storage, read_write> counters: array<atomic<u32>, 4>;
+@group(0) @binding(3) var<storage, read_write> counters: array<atomic<u32>, 8>;
 @group(0) @binding(4) var<storage, read_write> tiles: array<array<atomic<u32>, 2>>;
 @group(0) @binding(5) var<storage, read_write> lists: array<u32>;
 
@@ -39,6 +39,7 @@ fn count(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) 
     for (var i = id.x; i < end; i += 64u * groups.x) {
         let t = touched(primitives[i].x, primitives[i].y);
         let small = primitives[i].flags & SMALL;
+        let others = select(raster_target.tiles.x * raster_target.tiles.y, 0u, small != 0u);
         let many = (t.y - t.x + 1) * (t.w - t.z + 1) > MANY_TILES;
         if many {
             let slot = atomicAdd(&counters[1], 1u);
@@ -51,7 +52,8 @@ fn count(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) 
         primitives[i].flags = small;
         for (var row = t.z; row <= t.w; row++) {
             for (var column = t.x; column <= t.y; column++) {
-                atomicAdd(&tiles[u32(row) * raster_target.tiles.x + u32(column)][0], 1u);
+                let tile = u32(row) * raster_target.tiles.x + u32(column);
+                atomicAdd(&tiles[others + tile][0], 1u);
             }
         }
     }
@@ -65,10 +67,12 @@ fn scatter(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups
             continue;
         }
         let t = touched(primitives[i].x, primitives[i].y);
+        let small = (primitives[i].flags & SMALL) != 0u;
+        let others = select(raster_target.tiles.x * raster_target.tiles.y, 0u, small);
         for (var row = t.z; row <= t.w; row++) {
             for (var column = t.x; column <= t.y; column++) {
                 let tile = u32(row) * raster_target.tiles.x + u32(column);
-                let at = atomicAdd(&tiles[tile][1], 1u);
+                let at = atomicAdd(&tiles[others + tile][1], 1u);
                 if at < arrayLength(&lists) {
                     lists[at] = i;
                 }

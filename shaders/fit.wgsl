@@ -1,13 +1,11 @@
 // Fit: lays the sun's map over where what is seen and the shadows that can fall on it meet, with
 // texels no finer than a pixel.
 //
-// Reads the boxes, writes the map's view, its raster target and the size of its dispatch, and
-// marks the objects whose shadow can be seen. One invocation does it all.
+// Reads the boxes, writes the map's view and its raster target, and marks the objects whose shadow can be seen. One invocation does it all.
 
 @group(0) @binding(1) var<storage, read_write> bounds: array<Bounds>;
 @group(0) @binding(2) var<storage, read_write> raster_target: Target;
 @group(0) @binding(3) var<storage, read_write> sun_view: SunView;
-@group(0) @binding(4) var<storage, read_write> map_tiles: array<u32, 4>;
 
 // Texels left free around what the map is fitted to.
 const MARGIN: f32 = 2.0;
@@ -63,10 +61,8 @@ fn set_row(row: u32, axis: vec3<f32>, scale: Double, offset: Double) {
 @compute @workgroup_size(1)
 fn main() {
     sun_view.present = 0u;
-    map_tiles[0] = 0u;
-    map_tiles[1] = 0u;
-    map_tiles[2] = 1u;
-    raster_target.tiles = vec2<u32>(0u);
+    raster_target.width = 0u;
+    raster_target.height = 0u;
     let receivers = box_at(0u);
     var casters = Box(vec3<f32>(0.0), vec3<f32>(0.0), true);
     for (var i = 1u; i <= frame.object_count; i++) {
@@ -112,10 +108,6 @@ fn main() {
     raster_target.width = across.texels;
     raster_target.height = down.texels;
     raster_target.band_height = down.texels;
-    let tiles = vec2<u32>(across.texels, down.texels) >> vec2<u32>(TILE_LOG2);
-    raster_target.tiles = tiles;
-    map_tiles[0] = tiles.x;
-    map_tiles[1] = tiles.y;
     sun_view.rows[0] = raster_target.rows[0];
     sun_view.rows[1] = raster_target.rows[1];
     sun_view.rows[2] = raster_target.rows[3];

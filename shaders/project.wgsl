@@ -1,4 +1,4 @@
-// Project: placed vertices into the sun's map, of objects whose shadow can be seen.
+// Project: placed vertices into the sun's map; objects whose shadow cannot be seen are left out.
 //
 // Reads placed vertices, writes projected ones over the camera's, which nobody needs any more.
 
@@ -15,10 +15,12 @@ fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index
         return;
     }
     let batch = batches[index];
-    if bounds[batch.object + 1u].reaches == 0u {
-        return;
-    }
+    let reaches = bounds[batch.object + 1u].reaches != 0u;
     for (var i = lane; i < batch.count; i += 64u) {
-        screen[batch.first + i] = project(vertices[batch.first + i].position);
+        var projected = project(vertices[batch.first + i].position);
+        if !reaches {
+            projected.x = LEFT_OUT;
+        }
+        screen[batch.first + i] = projected;
     }
 }

@@ -12,23 +12,13 @@
 // Pixels of a strip.
 const STRIP: u32 = 32u;
 
-var<private> object: u32 = NOTHING;
-var<private> count: u32;
-var<private> low: vec2<u32>;
-var<private> high: vec2<u32>;
-
-// Adds what was gathered of one object.
-fn flush() {
-    if object != NOTHING && count > 0u {
-        atomicAdd(&sums[object][0], count);
-        atomicMax(&sums[object][1], NOTHING - low.x);
-        atomicMax(&sums[object][2], NOTHING - low.y);
-        atomicMax(&sums[object][3], high.x);
-        atomicMax(&sums[object][4], high.y);
+// The object of a sample, NOTHING for none.
+fn object_at(index: u32) -> u32 {
+    let slot = samples[index].x;
+    if slot == NOTHING {
+        return NOTHING;
     }
-    count = 0u;
-    low = vec2<u32>(NOTHING);
-    high = vec2<u32>(0u);
+    return surfaces[primitives[slot].draw].object;
 }
 
 @compute @workgroup_size(2, 32)
@@ -36,30 +26,29 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     if id.y >= raster_target.band_height {
         return;
     }
-    flush();
-    var slot = NOTHING;
-    let end = min((id.x + 1u) * STRIP, raster_target.width);
-    for (var x = id.x * STRIP; x < end; x++) {
-        let first = (id.y * raster_target.width + x) * SAMPLES;
-        let corner = vec2<u32>(x, id.y + raster_target.first_y) * 16u;
-        for (var s = 0u; s < SAMPLES; s++) {
-            let own = samples[first + s].x;
-            if own != slot {
-                slot = own;
-                var next = NOTHING;
-                if slot != NOTHING {
-                    next = surfaces[primitives[slot].draw].object;
-                }
-                if next != object {
-                    flush();
-                    object = next;
-                }
-            }
-            let at = corner + vec2<u32>(POSITIONS[s]);
+    let row = id.y * raster_target.width * SAMPLES;
+    let end = min((id.x + 1u) * STRIP, raster_target.width) * SAMPLES;
+    var i = id.x * STRIP * SAMPLES;
+    while i < end {
+        // A run of samples of one object.
+        let object = object_at(row + i);
+        var count = 0u;
+        var low = vec2<u32>(NOTHING);
+        var high = vec2<u32>(0u);
+        while i < end && object_at(row + i) == object {
+            let corner = vec2<u32>(i / SAMPLES, id.y + raster_target.first_y) * 16u;
+            let at = corner + vec2<u32>(POSITIONS[i % SAMPLES]);
             count += 1u;
             low = min(low, at);
             high = max(high, at);
+            i += 1u;
+        }
+        if object != NOTHING {
+            atomicAdd(&sums[object][0], count);
+            atomicMax(&sums[object][1], NOTHING - low.x);
+            atomicMax(&sums[object][2], NOTHING - low.y);
+            atomicMax(&sums[object][3], high.x);
+            atomicMax(&sums[object][4], high.y);
         }
     }
-    flush();
 }

@@ -12,7 +12,7 @@ var<workgroup> sums: array<u32, LANES>;
 
 @compute @workgroup_size(LANES)
 fn main(@builtin(local_invocation_index) lane: u32) {
-    let count = raster_target.tiles.x * raster_target.tiles.y;
+    let count = 2u * raster_target.tiles.x * raster_target.tiles.y;
     let run = (count + LANES - 1u) / LANES;
     let first = min(lane * run, count);
     let to = min(first + run, count);

@@ -10,7 +10,7 @@
 @group(0) @binding(4) var<storage, read> palette: array<vec4<f32>>;
 @group(0) @binding(5) var<storage, read_write> vertices: array<Vertex>;
 @group(0) @binding(6) var<storage, read_write> screen: array<ScreenVertex>;
-@group(0) @binding(7) var<storage, read_write> bad_object: array<atomic<u32>, 4>;
+@group(0) @binding(7) var<storage, read_write> bad_object: array<atomic<u32>, 8>;
 
 // Words of a vertex in the pool: position, normal, u, v, four joints, four weights.
 const VERTEX_WORDS: u32 = 10u;

@@ -528,9 +528,14 @@ fn without_a_command_it_says_that_there_is_no_editor_yet() {
 fn the_doctor_reports_on_everything() {
     let ran = desk().run("doctor --simd baseline");
     assert_eq!(ran.exit, Exit::Done, "{}", ran.out);
-    for part in
-        ["figurant 0", "threads", "brush (Baseline)", "3 colours", "32 x 24 pixels with 1 people"]
-    {
+    for part in [
+        "figurant 0",
+        "threads",
+        "brush (Baseline)",
+        "3 colours",
+        "32 x 24 pixels with 1 people",
+        "easel (wood)",
+    ] {
         assert!(ran.out.contains(part), "{part} in\n{}", ran.out);
     }
 }

@@ -130,9 +130,14 @@ struct Counters {
     entries: u32,
     // All ones minus the first object with a number that is not finite; 0 for none.
     bad_object: u32,
+    // Triangles that are cut, or whose visible part is bounded.
+    crossing: u32,
+    pad0: u32,
+    pad1: u32,
+    pad2: u32,
 }
 
-// Where a tile's list stands.
+// Where a list of a tile stands: those of small primitives come first, then those of others.
 struct Tile {
     count: u32,
     // Its end, once scattered.
@@ -201,6 +206,8 @@ struct ObjectSums {
 }
 
 const OUTSIDE: i32 = -2147483648;
+// As x of a vertex whose object is left out.
+const LEFT_OUT: i32 = -2147483647;
 const NOTHING: u32 = 0xffffffffu;
 
 // Surface.flags
@@ -218,5 +225,8 @@ const TILE_LOG2: u32 = 3u;
 const BATCHES_ACROSS: u32 = 32768u;
 // Room for primitives that every tile looks at, in front of the tiles' lists.
 const LARGE_ROOM: u32 = 4096u;
+
+// Words of the sun's map in front of its texels: the SunView.
+const HEADER: u32 = 20u;
 
 @group(0) @binding(0) var<uniform> frame: Frame;

@@ -97,6 +97,19 @@ fn surrounding(r: Reflector, roughness: f32) -> vec3<f32> {
     return hemisphere(upwards) * r.diffuse + hemisphere(mirrored_upwards) * mirror;
 }
 
+// Which of 32 lamps reach a surface, a bit each.
+fn reaching(r: Reflector, first: u32) -> u32 {
+    var found = 0u;
+    let end = min(frame.light_count - first, 32u);
+    for (var i = 0u; i < end; i++) {
+        let to_light = lights[first + i].position - r.position;
+        let in_range = dot(to_light, to_light) * lights[first + i].per_range_m2 < 1.0;
+        let faces = dot(r.normal, to_light) > 0.0 || r.wrap > 0.0;
+        found |= select(0u, 1u << i, in_range && faces);
+    }
+    return found;
+}
+
 // Light of a lamp; nothing beyond its range.
 fn lamp(r: Reflector, light: Light) -> vec3<f32> {
     let to_light = light.position - r.position;
@@ -130,8 +143,12 @@ fn reflected(point: SurfacePoint, look: Look, metallic: f32, wrap: f32) -> vec3<
             }
         }
     }
-    for (var i = 0u; i < frame.light_count; i++) {
-        sum += lamp(r, lights[i]);
+    for (var first = 0u; first < frame.light_count; first += 32u) {
+        var rest = reaching(r, first);
+        while rest != 0u {
+            sum += lamp(r, lights[first + firstTrailingBit(rest)]);
+            rest &= rest - 1u;
+        }
     }
     return sum;
 }

@@ -45,42 +45,55 @@ fn bent(normal: vec3<f32>, by: vec3<f32>, point: SurfacePoint) -> vec3<f32> {
     return normalized(tangent * by.x - bitangent * by.y + normal * max(by.z, 0.05));
 }
 
-fn has_map(draw: u32, map: u32) -> bool {
-    return (surfaces[draw].map_info[map] & MAP_PRESENT) != 0u;
+// The maps of a draw, a bit each.
+fn maps_of(draw: u32) -> u32 {
+    let present = (surfaces[draw].map_info & vec4<u32>(MAP_PRESENT)) != vec4<u32>(0u);
+    let bits = select(vec4<u32>(0u), vec4<u32>(1u, 2u, 4u, 8u), present);
+    return bits.x | bits.y | bits.z | bits.w;
 }
 
-fn map_at(draw: u32, map: u32, uv: vec2<f32>, footprint: f32) -> vec4<f32> {
-    return look_up(surfaces[draw].map_first[map], surfaces[draw].map_info[map], uv, footprint);
-}
-
+// Looks up one map after the other, so that invocations without maps do not pay for those of
+// their neighbours more than once.
 fn look_at(draw: u32, point: SurfacePoint) -> Look {
     var look = Look(surfaces[draw].base_color, surfaces[draw].roughness, point.normal);
-    let repeat = surfaces[draw].uv_repeat;
-    let uv = point.uv * repeat;
-    let footprint = footprint_of(point.d_dx * repeat, point.d_dy * repeat);
-    if has_map(draw, ALBEDO_MAP) {
-        look.albedo *= map_at(draw, ALBEDO_MAP, uv, footprint).xyz;
+    var detail = 1.0;
+    var tilt = vec3<f32>(0.0, 0.0, 1.0);
+    var mask = vec4<f32>(0.0);
+    let maps = maps_of(draw);
+    var rest = maps;
+    while rest != 0u {
+        let map = firstTrailingBit(rest);
+        rest &= rest - 1u;
+        // The mask is not repeated.
+        let repeat = select(surfaces[draw].uv_repeat, vec2<f32>(1.0), map == MASK_MAP);
+        let footprint = footprint_of(point.d_dx * repeat, point.d_dy * repeat);
+        let first = surfaces[draw].map_first[map];
+        let texel = look_up(first, surfaces[draw].map_info[map], point.uv * repeat, footprint);
+        if map == ALBEDO_MAP {
+            look.albedo *= texel.xyz;
+        } else if map == DETAIL_MAP {
+            let strength = surfaces[draw].detail_strength;
+            detail = max(1.0 + strength * (texel.x + texel.x - 1.0), 0.0);
+        } else if map == NORMAL_MAP {
+            let n = texel.xyz * 2.0 - 1.0;
+            tilt = vec3<f32>(n.xy * surfaces[draw].normal_strength, n.z);
+        } else {
+            mask = texel;
+        }
     }
     if surfaces[draw].hue_turn >= 0.0 {
         look.albedo = rotate_hue(look.albedo, surfaces[draw].hue_turn);
     }
-    if has_map(draw, DETAIL_MAP) {
-        let r = map_at(draw, DETAIL_MAP, uv, footprint).x;
-        look.albedo *= max(1.0 + surfaces[draw].detail_strength * (r + r - 1.0), 0.0);
+    look.albedo *= detail;
+    if (maps & (1u << NORMAL_MAP)) != 0u {
+        look.normal = bent(look.normal, tilt, point);
     }
-    if has_map(draw, NORMAL_MAP) {
-        let n = map_at(draw, NORMAL_MAP, uv, footprint).xyz * 2.0 - 1.0;
-        let by = vec3<f32>(n.xy * surfaces[draw].normal_strength, n.z);
-        look.normal = bent(look.normal, by, point);
+    let layers = select(0u, 4u, (maps & (1u << MASK_MAP)) != 0u);
+    for (var k = 0u; k < layers; k++) {
+        let layer = surfaces[draw].layers[k];
+        look.albedo += (layer.xyz - look.albedo) * mask[k];
+        look.roughness += (layer.w - look.roughness) * mask[k];
     }
-    if has_map(draw, MASK_MAP) {
-        let mask = map_at(draw, MASK_MAP, point.uv, footprint_of(point.d_dx, point.d_dy));
-        for (var k = 0u; k < 4u; k++) {
-            let layer = surfaces[draw].layers[k];
-            look.albedo += (layer.xyz - look.albedo) * mask[k];
-            look.roughness += (layer.w - look.roughness) * mask[k];
-        }
-        look.roughness = clamp(look.roughness, 0.04, 1.0);
-    }
+    look.roughness = clamp(look.roughness, 0.04, 1.0);
     return look;
 }

@@ -18,36 +18,18 @@ fn pixel_of(lane: u32, k: u32) -> vec2<i32> {
 }
 
 fn keep(at: u32, depth: f32, order: u32, slot: u32) {
-    if IDS {
-        let wins = depth > best_depth[at] || (depth == best_depth[at] && order < best_order[at]);
-        if wins && depth > 0.0 {
-            best_depth[at] = depth;
-            best_order[at] = order;
-            best_slot[at] = slot;
-        }
-    } else {
-        best_depth[at] = max(best_depth[at], depth);
+    let wins = depth > best_depth[at] || (depth == best_depth[at] && order < best_order[at]);
+    if wins && depth > 0.0 {
+        best_depth[at] = depth;
+        best_order[at] = order;
+        best_slot[at] = slot;
     }
-}
-
-// An edge function at the tile's origin: in grid steps, rounded so that its sign holds at every
-// sample, and its value.
-struct EdgeStart {
-    grid: i32,
-    value: f32,
-}
-
-fn edge_start(a: i32, b: i32, x: i32, y: i32, bias: i32, shift: u32) -> EdgeStart {
-    let value = negate_wide(add_wide(multiply_wide(a, x), multiply_wide(b, y)));
-    let biased = add_wide(value, Wide(bitcast<u32>(bias), bias));
-    return EdgeStart(shift_wide(biased, shift), float_wide(value));
 }
 
 fn raster_large(slot: u32, lane: u32, x: vec3<i32>, y: vec3<i32>) {
     let a = y - y.yzx;
     let b = x.yzx - x;
-    let top_left = (a > vec3<i32>(0)) | ((a == vec3<i32>(0)) & (b > vec3<i32>(0)));
-    let bias = select(vec3<i32>(-1), vec3<i32>(0), top_left);
+    let bias = edge_bias(a, b);
     // Values of edges over some 4096 pixels long are too large with fine steps; they can do
     // without the last digits, as what is lost over a tile is a millionth of a step.
     let steep = max(max(abs(a.x) + abs(b.x), abs(a.y) + abs(b.y)), abs(a.z) + abs(b.z));
@@ -86,8 +68,7 @@ fn raster_large(slot: u32, lane: u32, x: vec3<i32>, y: vec3<i32>) {
 fn raster_small(slot: u32, lane: u32, x: vec3<i32>, y: vec3<i32>) {
     let a = y - y.yzx;
     let b = x.yzx - x;
-    let top_left = (a > vec3<i32>(0)) | ((a == vec3<i32>(0)) & (b > vec3<i32>(0)));
-    let bias = select(vec3<i32>(-1), vec3<i32>(0), top_left);
+    let bias = edge_bias(a, b);
     let start = -(a * x + b * y);
     let z = primitives[slot].depth;
     let order = primitives[slot].order;
@@ -106,18 +87,8 @@ fn raster_small(slot: u32, lane: u32, x: vec3<i32>, y: vec3<i32>) {
     }
 }
 
-fn raster_primitive(slot: u32, lane: u32, origin: vec2<i32>) {
-    // From the first sample of a grid that goes on over the tile.
-    let x = primitives[slot].x - vec3<i32>(origin.x + GRID_CORNER.x * 64);
-    let y = primitives[slot].y - vec3<i32>(origin.y + GRID_CORNER.y * 64);
-    if (primitives[slot].flags & SMALL) != 0u {
-        raster_small(slot, lane, x, y);
-    } else {
-        raster_large(slot, lane, x, y);
-    }
-}
-
-// Rasters everything that touches a tile.
+// Rasters everything that touches a tile: small primitives, then those of its list of others and
+// those that all tiles look at.
 fn raster_tile(tile: vec2<u32>, lane: u32) {
     for (var i = 0u; i < KEPT; i++) {
         best_depth[i] = 0.0;
@@ -125,20 +96,18 @@ fn raster_tile(tile: vec2<u32>, lane: u32) {
         best_slot[i] = NOTHING;
     }
     let corner = vec2<i32>(tile << vec2<u32>(TILE_LOG2)) + vec2<i32>(0, i32(raster_target.first_y));
-    let origin = corner << vec2<u32>(10u);
-    let large = min(counters.large, LARGE_ROOM);
-    for (var i = 0u; i < large; i++) {
+    // The first sample of a grid that goes on over the tile, raster units.
+    let origin = (corner << vec2<u32>(10u)) + GRID_CORNER * 64;
+    let index = tile.y * raster_target.tiles.x + tile.x;
+    let small = tiles[index];
+    for (var i = small.end - small.count; i < small.end; i++) {
         let slot = lists[i];
-        let x = primitives[slot].x;
-        let y = primitives[slot].y;
-        let low = vec2<i32>(min(min(x.x, x.y), x.z), min(min(y.x, y.y), y.z)) - origin;
-        let high = vec2<i32>(max(max(x.x, x.y), x.z), max(max(y.x, y.y), y.z)) - origin;
-        if all(low < vec2<i32>(8 << 10u)) && all(high >= vec2<i32>(0)) {
-            raster_primitive(slot, lane, origin);
-        }
+        raster_small(slot, lane, primitives[slot].x - origin.x, primitives[slot].y - origin.y);
     }
-    let place = tiles[tile.y * raster_target.tiles.x + tile.x];
-    for (var i = place.end - place.count; i < place.end; i++) {
-        raster_primitive(lists[i], lane, origin);
+    let large = min(counters.large, LARGE_ROOM);
+    let others = tiles[index + raster_target.tiles.x * raster_target.tiles.y];
+    for (var i = 0u; i < large + others.count; i++) {
+        let slot = lists[select(others.end - others.count + i - large, i, i < large)];
+        raster_large(slot, lane, primitives[slot].x - origin.x, primitives[slot].y - origin.y);
     }
 }

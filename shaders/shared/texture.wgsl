@@ -16,13 +16,14 @@ fn decode_plain(texel: u32) -> vec4<f32> {
     return unpack4x8unorm(texel);
 }
 
-// A texel of colour to linear light. sRGB (IEC 61966-2-1), within a twentieth of a step of 255:
+// A texel of colour to linear light, its alpha as it stands. sRGB (IEC 61966-2-1), within a twentieth of a step of 255:
 // the linear toe, and above it a polynomial fitted for the least largest error after encoding.
 fn decode_color(texel: u32) -> vec4<f32> {
-    let v = unpack4x8unorm(texel);
+    let all = unpack4x8unorm(texel);
+    let v = all.xyz;
     let curve =
         (((v * -0.11538927 + 0.523844) * v + 0.56196445) * v + 0.028079284) * v + 0.0010636618;
-    return select(v * (1.0 / 12.92), curve, v > vec4<f32>(0.04045));
+    return vec4<f32>(select(v * (1.0 / 12.92), curve, v > vec3<f32>(0.04045)), all.w);
 }
 
 fn texel_at(at: u32, info: u32) -> vec4<f32> {

@@ -6,6 +6,7 @@
 #![allow(clippy::unwrap_used, reason = "helpers of tests, too, fail by panicking")]
 
 mod common;
+mod export;
 mod limits;
 mod parity;
 mod scenes;

@@ -120,9 +120,13 @@ pub struct Counters {
     pub large: u32,
     pub entries: u32,
     pub bad_object: u32,
+    pub crossing: u32,
+    pub pad0: u32,
+    pub pad1: u32,
+    pub pad2: u32,
 }
 
-/// Where a tile's list stands.
+/// Where a list of a tile stands.
 #[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
 #[repr(C)]
 pub struct Tile {

@@ -100,9 +100,6 @@ fn usages(resource: Resource) -> wgpu::BufferUsages {
     if uniform {
         usages |= wgpu::BufferUsages::UNIFORM;
     }
-    if resource == Resource::MapTiles {
-        usages |= wgpu::BufferUsages::INDIRECT;
-    }
     usages
 }
 
@@ -120,9 +117,8 @@ const fn name(resource: Resource) -> &'static str {
         Resource::Surfaces => "graphics memory of materials",
         Resource::Lights => "graphics memory of lights",
         Resource::Primitives | Resource::SunPrimitives => "graphics memory of visible triangles",
-        Resource::Counters | Resource::SunCounters | Resource::MapTiles => {
-            "graphics memory of counters"
-        }
+        Resource::Counters | Resource::SunCounters => "graphics memory of counters",
+        Resource::Crossing => "graphics memory of triangles to be cut",
         Resource::Bounds | Resource::Sums => "graphics memory of objects",
         Resource::Tiles | Resource::Lists => "graphics memory of tiles",
         Resource::Samples => "graphics memory of samples",

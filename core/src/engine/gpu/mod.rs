@@ -3,8 +3,8 @@
 //! | stage | shader | in -> out |
 //! |---|---|---|
 //! | skin | `skin` | meshes, palette -> placed and projected vertices |
-//! | visibility | `setup`, `bin`, `scan` | -> triangles by tile |
-//! | shadow | `bound`, `fit`, `project`, `setup`, `bin`, `scan`, `shadow` | -> the sun's depth map |
+//! | visibility | `setup`, `clip`, `bin`, `scan` | -> triangles by tile |
+//! | shadow | `bound`, `fit`, `project`, `sun_setup`, `clip`, `shadow` | -> the sun's depth map |
 //! | visibility | `raster` | -> triangle and depth of each sample |
 //! | shade, display | `shade` | -> the 8-bit picture |
 //! | resolve, reduce | `resolve`, `reduce` | -> ids, distances, counts, extents |
@@ -259,7 +259,6 @@ impl State {
         buffers.ensure(device, Resource::Sums, objects * size_of::<ObjectSums>() as u64)?;
         buffers.ensure(device, Resource::Counters, size_of::<Counters>() as u64)?;
         buffers.ensure(device, Resource::SunCounters, size_of::<Counters>() as u64)?;
-        buffers.ensure(device, Resource::MapTiles, 16)?;
         let texels = if shadow { u64::from(list.shadow_map_size).pow(2) } else { 0 };
         let header = size_of::<abi::SunView>() as u64;
         buffers.ensure(device, Resource::ShadowMap, header + texels * 4)?;
@@ -268,6 +267,7 @@ impl State {
             *room = (*room).max(u64::from(triangles) / 2 + 4096);
         }
         let triangles = u64::from(packed.triangles.into_iter().max().unwrap_or(0));
+        buffers.ensure(device, Resource::Crossing, triangles * 4)?;
         self.room.entries = self.room.entries.max(triangles * 2 + u64::from(LARGE_ROOM) * 4);
         Ok(())
     }
@@ -282,7 +282,7 @@ impl State {
         times: &mut StageTimes,
     ) -> Result<bool, EngineError> {
         let rows = self.band_rows(list)?;
-        self.make_room(list, shadow, rows)?;
+        self.make_room(list, rows)?;
         for first_y in (0..list.view.height).step_by(rows as usize) {
             let rows = rows.min(list.view.height - first_y);
             let band = Band { first_y, rows, last: first_y + rows == list.view.height };
@@ -325,7 +325,7 @@ impl State {
     }
 
     /// Makes room for what depends on the size of the picture and the number of triangles.
-    fn make_room(&mut self, list: &DrawList, shadow: bool, rows: u32) -> Result<(), EngineError> {
+    fn make_room(&mut self, list: &DrawList, rows: u32) -> Result<(), EngineError> {
         let (device, buffers) = (&self.device, &mut self.buffers);
         let width = u64::from(list.view.width);
         let rows = u64::from(rows.min(list.view.height));
@@ -338,9 +338,9 @@ impl State {
         buffers.ensure(device, Resource::Picture, width * rows * 4)?;
         buffers.ensure(device, Resource::Resolved, width * rows * 8)?;
         let tile = u64::from(abi::TILE);
-        let of_picture = width.div_ceil(tile) * rows.div_ceil(tile);
-        let side = u64::from(if shadow { list.shadow_map_size } else { 0 }) / tile;
-        buffers.ensure(device, Resource::Tiles, of_picture.max(side * side) * 8)?;
+        let tiles = width.div_ceil(tile) * rows.div_ceil(tile);
+        // A list of small primitives and one of others for each.
+        buffers.ensure(device, Resource::Tiles, tiles * 2 * size_of::<abi::Tile>() as u64)?;
         Ok(())
     }
 
@@ -362,7 +362,7 @@ impl State {
             encoder: &mut encoder,
             samples: list.samples,
             target: &target,
-            triangles: self.packed.triangles,
+            triangles: self.packed.triangles[0],
         };
         recorder.start();
         if band.first_y == 0 {

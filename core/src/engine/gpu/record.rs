@@ -58,17 +58,17 @@ pub struct Recorder<'a> {
     pub encoder: &'a mut wgpu::CommandEncoder,
     pub samples: u32,
     pub target: &'a Target,
-    /// Triangles before culling, of the picture and of the sun's map.
-    pub triangles: [u32; 2],
+    /// Triangles of the picture before culling.
+    pub triangles: u32,
 }
 
 /// Workgroups of a stage.
-#[derive(Clone, Copy)]
-enum Groups {
-    Of([u32; 3]),
-    /// As many as the sun's map has tiles.
-    OfMap,
-}
+type Groups = [u32; 3];
+
+/// Workgroups that share the triangles to be cut, of which there are few.
+const CLIPPERS: Groups = [16, 1, 1];
+/// Workgroups that share the larger triangles of the sun's map.
+const SHADOW_GROUPS: Groups = [512, 1, 1];
 
 /// Pixels of a strip of `reduce.wgsl`, times the strips of a workgroup.
 const REDUCE_WIDTH: u32 = 64;
@@ -100,46 +100,44 @@ impl Recorder<'_> {
         }
         self.run(Stage::Skin, batches(self.target.vertex_batch_count));
         self.run(Stage::Setup, batches(self.target.batch_count));
+        self.run(Stage::Clip, CLIPPERS);
     }
 
     /// Fits and fills the sun's map.
     pub fn shadow(&mut self, batch_count: u32) {
         let vertex_batches = batches(self.target.vertex_batch_count);
         self.run(Stage::Bound, vertex_batches);
-        self.run(Stage::Fit, Groups::Of([1; 3]));
+        self.encoder.clear_buffer(self.buffers.get(Resource::ShadowMap), 0, None);
+        self.run(Stage::Fit, [1; 3]);
         self.run(Stage::Project, vertex_batches);
         self.run(Stage::SunSetup, batches(batch_count));
-        let walkers = walkers(self.triangles[1]);
-        self.encoder.clear_buffer(self.buffers.get(Resource::Tiles), 0, None);
-        self.run(Stage::SunCount, walkers);
-        self.run(Stage::SunScan, Groups::Of([1; 3]));
-        self.run(Stage::SunScatter, walkers);
-        self.run(Stage::Shadow, Groups::OfMap);
+        self.run(Stage::SunClip, CLIPPERS);
+        self.run(Stage::Shadow, SHADOW_GROUPS);
     }
 
     /// Finds what the band's samples show.
     pub fn visibility(&mut self) {
-        let walkers = walkers(self.triangles[0]);
+        let walkers = walkers(self.triangles);
         self.encoder.clear_buffer(self.buffers.get(Resource::Tiles), 0, None);
         // The count of large primitives, which differs from band to band.
         self.encoder.clear_buffer(self.buffers.get(Resource::Counters), 4, Some(4));
         self.run(Stage::Count, walkers);
-        self.run(Stage::Scan, Groups::Of([1; 3]));
+        self.run(Stage::Scan, [1; 3]);
         self.run(Stage::Scatter, walkers);
         let [columns, rows] = self.target.tiles;
-        self.run(Stage::Raster, Groups::Of([columns, rows, 1]));
+        self.run(Stage::Raster, [columns, rows, 1]);
     }
 
     /// Makes what the plan asks for from the samples.
     pub fn outputs(&mut self, plan: &PassPlan) {
         let Target { width, band_height, .. } = *self.target;
-        let tiles = Groups::Of([width.div_ceil(TILE), band_height.div_ceil(TILE), 1]);
+        let tiles = [width.div_ceil(TILE), band_height.div_ceil(TILE), 1];
         if plan.runs(Pass::Resolve) {
             self.run(Stage::Resolve, tiles);
         }
         if plan.runs(Pass::Reduce) {
             let strips = [width.div_ceil(REDUCE_WIDTH), band_height.div_ceil(REDUCE_ROWS), 1];
-            self.run(Stage::Reduce, Groups::Of(strips));
+            self.run(Stage::Reduce, strips);
         }
         if plan.runs(Pass::Display) {
             self.run(Stage::Shade, tiles);
@@ -147,7 +145,7 @@ impl Recorder<'_> {
     }
 
     fn run(&mut self, stage: Stage, groups: Groups) {
-        if matches!(groups, Groups::Of(size) if size.contains(&0)) {
+        if groups.contains(&0) {
             return;
         }
         let timestamp_writes = self.clock.as_mut().map(|clock| {
@@ -166,21 +164,17 @@ impl Recorder<'_> {
         });
         pass.set_bind_group(0, group, &[]);
         pass.set_pipeline(self.device.pipeline(stage, self.samples));
-        match groups {
-            Groups::Of([x, y, z]) => pass.dispatch_workgroups(x, y, z),
-            Groups::OfMap => {
-                pass.dispatch_workgroups_indirect(self.buffers.get(Resource::MapTiles), 0);
-            }
-        }
+        let [x, y, z] = groups;
+        pass.dispatch_workgroups(x, y, z);
     }
 }
 
 /// One workgroup for each batch.
 fn batches(count: u32) -> Groups {
-    Groups::Of([count.min(BATCHES_ACROSS), count.div_ceil(BATCHES_ACROSS), 1])
+    [count.min(BATCHES_ACROSS), count.div_ceil(BATCHES_ACROSS), 1]
 }
 
 /// Invocations that walk a list of so many triangles at most.
 fn walkers(triangles: u32) -> Groups {
-    Groups::Of([triangles.div_ceil(64).clamp(1, 1024), 1, 1])
+    [triangles.div_ceil(64).clamp(1, 1024), 1, 1]
 }

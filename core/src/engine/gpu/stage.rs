@@ -32,8 +32,8 @@ pub enum Resource {
     Counters,
     SunCounters,
     Bounds,
-    /// The size of the dispatch of the sun's raster.
-    MapTiles,
+    /// Triangles that are left to the clipping, of the picture, then of the sun's map.
+    Crossing,
     Tiles,
     Lists,
     Samples,
@@ -60,13 +60,12 @@ pub enum Access {
 pub enum Stage {
     Skin,
     Setup,
+    Clip,
     Bound,
     Fit,
     Project,
     SunSetup,
-    SunCount,
-    SunScan,
-    SunScatter,
+    SunClip,
     Shadow,
     Count,
     Scan,
@@ -82,16 +81,15 @@ use Resource as R;
 
 impl Stage {
     /// All stages in the order in which a frame runs them.
-    pub const ALL: [Self; 17] = [
+    pub const ALL: [Self; 16] = [
         Self::Skin,
         Self::Setup,
+        Self::Clip,
         Self::Bound,
         Self::Fit,
         Self::Project,
         Self::SunSetup,
-        Self::SunCount,
-        Self::SunScan,
-        Self::SunScatter,
+        Self::SunClip,
         Self::Shadow,
         Self::Count,
         Self::Scan,
@@ -106,11 +104,9 @@ impl Stage {
     pub const fn name(self) -> &'static str {
         match self {
             Self::Skin => "skin",
-            Self::Setup => "setup",
+            Self::Setup | Self::Clip => "setup",
             Self::Bound | Self::Fit => "shadow fit",
-            Self::Project | Self::SunSetup | Self::SunCount | Self::SunScan | Self::SunScatter => {
-                "shadow setup"
-            }
+            Self::Project | Self::SunSetup | Self::SunClip => "shadow setup",
             Self::Shadow => "shadow raster",
             Self::Count | Self::Scan | Self::Scatter => "bin",
             Self::Raster => "raster",
@@ -123,8 +119,8 @@ impl Stage {
     /// The shader's entry point.
     pub const fn entry(self) -> &'static str {
         match self {
-            Self::Count | Self::SunCount => "count",
-            Self::Scatter | Self::SunScatter => "scatter",
+            Self::Count => "count",
+            Self::Scatter => "scatter",
             _ => "main",
         }
     }
@@ -152,21 +148,42 @@ impl Stage {
                 (R::Target, Read),
                 (R::Batches, Read),
                 (R::Meshes, Read),
-                (R::Vertices, Read),
                 (R::Screen, Read),
                 (R::Primitives, Write),
                 (R::Counters, Write),
-                (R::Bounds, Write),
+                (R::Crossing, Write),
             ],
             Self::SunSetup => &[
                 (R::Frame, Uniform),
                 (R::SunTarget, Read),
                 (R::SunBatches, Read),
                 (R::Meshes, Read),
-                (R::Vertices, Read),
                 (R::Screen, Read),
                 (R::SunPrimitives, Write),
                 (R::SunCounters, Write),
+                (R::Crossing, Write),
+                (R::ShadowMap, Write),
+            ],
+            Self::Clip => &[
+                (R::Frame, Uniform),
+                (R::Target, Read),
+                (R::Batches, Read),
+                (R::Meshes, Read),
+                (R::Vertices, Read),
+                (R::Primitives, Write),
+                (R::Counters, Write),
+                (R::Crossing, Read),
+                (R::Bounds, Write),
+            ],
+            Self::SunClip => &[
+                (R::Frame, Uniform),
+                (R::SunTarget, Read),
+                (R::SunBatches, Read),
+                (R::Meshes, Read),
+                (R::Vertices, Read),
+                (R::SunPrimitives, Write),
+                (R::SunCounters, Write),
+                (R::Crossing, Read),
                 (R::Bounds, Write),
             ],
             Self::Bound => &[
@@ -182,7 +199,6 @@ impl Stage {
                 (R::Bounds, Write),
                 (R::SunTarget, Write),
                 (R::ShadowMap, Write),
-                (R::MapTiles, Write),
             ],
             Self::Project => &[
                 (R::Frame, Uniform),
@@ -200,23 +216,9 @@ impl Stage {
                 (R::Tiles, Write),
                 (R::Lists, Write),
             ],
-            Self::SunCount | Self::SunScatter => &[
-                (R::Frame, Uniform),
-                (R::SunTarget, Read),
-                (R::SunPrimitives, Write),
-                (R::SunCounters, Write),
-                (R::Tiles, Write),
-                (R::Lists, Write),
-            ],
             Self::Scan => {
                 &[(R::Frame, Uniform), (R::Target, Read), (R::Tiles, Write), (R::Counters, Write)]
             }
-            Self::SunScan => &[
-                (R::Frame, Uniform),
-                (R::SunTarget, Read),
-                (R::Tiles, Write),
-                (R::SunCounters, Write),
-            ],
             Self::Raster => &[
                 (R::Frame, Uniform),
                 (R::Target, Read),
@@ -231,8 +233,6 @@ impl Stage {
                 (R::SunTarget, Read),
                 (R::SunPrimitives, Read),
                 (R::SunCounters, Read),
-                (R::Tiles, Read),
-                (R::Lists, Read),
                 (R::ShadowMap, Write),
             ],
             Self::Resolve => &[
@@ -268,7 +268,7 @@ impl Stage {
 
     /// The whole text of its shader, for so many samples a pixel where that matters.
     pub fn source(self, samples: u32) -> String {
-        let mut text = constants(self, if self.by_samples() { samples } else { 1 });
+        let mut text = constants(if self.by_samples() { samples } else { 1 });
         for file in self.files() {
             text += &text_of(*file);
             text.push('\n');
@@ -283,15 +283,15 @@ impl Stage {
             Self::Project => &[ABI, DOUBLE, PROJECT, file!("project.wgsl")],
             Self::Bound => &[ABI, BOUNDS, file!("bound.wgsl")],
             Self::Fit => &[ABI, DOUBLE, BOUNDS, file!("fit.wgsl")],
-            Self::Setup | Self::SunSetup => {
-                &[ABI, DOUBLE, WIDE, PROJECT, BOUNDS, file!("setup.wgsl")]
+            Self::Setup => &[ABI, WIDE, TRIANGLE, file!("setup.wgsl")],
+            Self::SunSetup => &[ABI, WIDE, EDGE, TRIANGLE, file!("sun_setup.wgsl")],
+            Self::Clip | Self::SunClip => {
+                &[ABI, DOUBLE, WIDE, PROJECT, BOUNDS, TRIANGLE, file!("clip.wgsl")]
             }
-            Self::Count | Self::Scatter | Self::SunCount | Self::SunScatter => {
-                &[ABI, file!("bin.wgsl")]
-            }
-            Self::Scan | Self::SunScan => &[ABI, file!("scan.wgsl")],
-            Self::Raster => &[ABI, WIDE, RASTER, file!("raster.wgsl")],
-            Self::Shadow => &[ABI, WIDE, RASTER, file!("shadow.wgsl")],
+            Self::Count | Self::Scatter => &[ABI, file!("bin.wgsl")],
+            Self::Scan => &[ABI, file!("scan.wgsl")],
+            Self::Raster => &[ABI, WIDE, EDGE, RASTER, file!("raster.wgsl")],
+            Self::Shadow => &[ABI, WIDE, EDGE, file!("shadow.wgsl")],
             Self::Resolve => &[ABI, file!("resolve.wgsl")],
             Self::Reduce => &[ABI, file!("reduce.wgsl")],
             Self::Shade => &[
@@ -316,12 +316,14 @@ const DOUBLE: File = file!("shared/double.wgsl");
 const WIDE: File = file!("shared/wide.wgsl");
 const PROJECT: File = file!("shared/project.wgsl");
 const BOUNDS: File = file!("shared/bounds.wgsl");
+const TRIANGLE: File = file!("shared/triangle.wgsl");
+const EDGE: File = file!("shared/edge.wgsl");
 const RASTER: File = file!("shared/raster.wgsl");
 
 /// The text of a file. Debug builds take it from the folder that `FIGURANT_SHADERS` names, so that
 /// shaders can be worked on without building anew.
 fn text_of((name, text): File) -> String {
-    if (cfg!(debug_assertions) || true)
+    if cfg!(debug_assertions)
         && let Some(folder) = std::env::var_os("FIGURANT_SHADERS")
         && let Ok(changed) = std::fs::read_to_string(std::path::Path::new(&folder).join(name))
     {
@@ -368,7 +370,7 @@ pub const fn sample_rows(samples: u32) -> (i32, u32) {
 }
 
 /// What differs between the variants of a shader.
-fn constants(stage: Stage, samples: u32) -> String {
+fn constants(samples: u32) -> String {
     let positions: Vec<String> =
         sample_positions(samples).iter().map(|[x, y]| format!("vec2<i32>({x}, {y})")).collect();
     // With one sample a pixel, positions are whole pixels from its middle, else sixteenths.
@@ -380,13 +382,9 @@ fn constants(stage: Stage, samples: u32) -> String {
          const GRID_LOG2: u32 = {grid_log2}u;\n\
          const GRID_PER_PX: i32 = {};\n\
          const GRID_CORNER = vec2<i32>({corner}, {corner});\n\
-         const PIXELS: u32 = {pixels}u;\n\
-         const IDS: bool = {};\n\
-         const SUN: bool = {};\n",
+         const PIXELS: u32 = {pixels}u;\n",
         positions.join(", "),
         1 << (10 - grid_log2),
-        stage != Stage::Shadow,
-        stage == Stage::SunSetup,
     )
 }
 
