@@ -131,6 +131,7 @@ impl Atelier {
             config_json: format!("{config:#}\n"),
             program_version: "0.0.0".to_owned(),
             engine: "brush".to_owned(),
+            adapter: None,
             seed: wishes.seed.unwrap_or(1),
             width,
             height,
@@ -139,7 +140,13 @@ impl Atelier {
             assets: BTreeSet::new(),
         };
         let frames = config["frames"].as_u64().unwrap_or(3) as u32;
-        Job { document: config.clone(), frames, info, simd: wishes.simd }
+        Job {
+            document: config.clone(),
+            frames,
+            info,
+            engine: wishes.engine.clone(),
+            simd: wishes.simd,
+        }
     }
 }
 
@@ -190,6 +197,10 @@ impl Road for Atelier {
 
     fn engine(&self, simd: Simd) -> String {
         format!("brush ({simd:?})")
+    }
+
+    fn adapters(&self) -> Option<Vec<(String, String)>> {
+        Some(vec![("easel".to_owned(), "easel (wood)".to_owned())])
     }
 
     fn built_in_assets(&self) -> Result<Vec<String>, String> {
@@ -517,9 +528,14 @@ fn without_a_command_it_says_that_there_is_no_editor_yet() {
 fn the_doctor_reports_on_everything() {
     let ran = desk().run("doctor --simd baseline");
     assert_eq!(ran.exit, Exit::Done, "{}", ran.out);
-    for part in
-        ["figurant 0", "threads", "brush (Baseline)", "3 colours", "32 x 24 pixels with 1 people"]
-    {
+    for part in [
+        "figurant 0",
+        "threads",
+        "brush (Baseline)",
+        "3 colours",
+        "32 x 24 pixels with 1 people",
+        "easel (wood)",
+    ] {
         assert!(ran.out.contains(part), "{part} in\n{}", ran.out);
     }
 }

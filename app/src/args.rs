@@ -11,7 +11,7 @@ use figurant_core::plan::Output;
 
 use crate::overlay::Overlay;
 use crate::report::Style;
-use crate::road::Simd;
+use crate::road::{EngineKind, EngineWish, Simd};
 
 const AFTER_HELP: &str = "Exit status: 0 done, 1 some frames failed (listed in report.json), \
     2 wrong arguments, config or disk, 3 no usable engine, 130 interrupted. \
@@ -54,9 +54,27 @@ pub struct Changes {
     /// Picture size in pixels, instead of the config's.
     #[arg(long, value_name = "WxH", value_parser = size)]
     pub size: Option<[u32; 2]>,
-    /// Which of the engine's code paths runs; pictures are the same.
+    /// What renders.
+    #[arg(long, value_enum, default_value_t = EngineKind::Auto)]
+    pub engine: EngineKind,
+    /// Part of the name of the graphics adapter that renders; `doctor` lists them.
+    #[arg(long, value_name = "NAME")]
+    pub adapter: Option<String>,
+    /// Which code path of the native engine runs; pictures are the same.
     #[arg(long, value_enum, default_value_t = Simd::Auto)]
     pub simd: Simd,
+}
+
+impl Changes {
+    /// The engine that is asked for: an adapter's name asks for the graphics engine.
+    #[must_use]
+    pub fn engine(&self) -> EngineWish {
+        let kind = match (self.engine, &self.adapter) {
+            (EngineKind::Auto, Some(_)) => EngineKind::Gpu,
+            (kind, _) => kind,
+        };
+        EngineWish { kind, adapter: self.adapter.clone() }
+    }
 }
 
 #[derive(Debug, ClapArgs)]
@@ -160,6 +178,23 @@ fn size(text: &str) -> Result<[u32; 2], String> {
     let sides = text.split_once(['x', 'X']).and_then(|(w, h)| Some([side(w)?, side(h)?]));
     sides
         .ok_or_else(|| format!("expected width x height in pixels such as 640x480, got \"{text}\""))
+}
+
+impl ValueEnum for EngineKind {
+    fn value_variants<'a>() -> &'a [Self] {
+        &[Self::Auto, Self::Gpu, Self::Cpu]
+    }
+
+    fn to_possible_value(&self) -> Option<clap::builder::PossibleValue> {
+        use clap::builder::PossibleValue;
+        Some(match self {
+            Self::Auto => {
+                PossibleValue::new("auto").help("a graphics processor if there is one, else cpu")
+            }
+            Self::Gpu => PossibleValue::new("gpu").help("a graphics adapter"),
+            Self::Cpu => PossibleValue::new("cpu").help("the native engine"),
+        })
+    }
 }
 
 impl ValueEnum for Simd {

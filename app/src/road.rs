@@ -22,6 +22,27 @@ pub enum Simd {
     Baseline,
 }
 
+/// What renders.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum EngineKind {
+    /// Graphics hardware if there is any, else the native engine.
+    Auto,
+    /// A graphics adapter.
+    Gpu,
+    /// The native engine.
+    #[default]
+    Cpu,
+}
+
+/// What is to render; the native engine if nothing is said.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct EngineWish {
+    /// Which engine.
+    pub kind: EngineKind,
+    /// Part of the name of its adapter; the fastest hardware if absent.
+    pub adapter: Option<String>,
+}
+
 /// What the command line changes about a config.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Wishes {
@@ -31,6 +52,8 @@ pub struct Wishes {
     pub size: Option<[u32; 2]>,
     /// Instead of the config's outputs.
     pub outputs: Option<Outputs>,
+    /// What renders.
+    pub engine: EngineWish,
     /// Which code path of the engine runs.
     pub simd: Simd,
 }
@@ -44,6 +67,8 @@ pub struct Job<D> {
     pub frames: u32,
     /// What is the same for all frames of a data set of it.
     pub info: DatasetInfo,
+    /// What renders: settled, with the whole name of its adapter.
+    pub engine: EngineWish,
     /// Which code path of the engine runs.
     pub simd: Simd,
 }
@@ -57,6 +82,9 @@ pub enum LoadError {
     /// Its content is wrong. Each text names the field, what is wrong, and what to do.
     #[error("{}", .0.join("\n"))]
     Invalid(Vec<String>),
+    /// The engine that was asked for cannot be had here.
+    #[error("{0}")]
+    NoEngine(String),
 }
 
 /// The way from configs to frames.
@@ -104,6 +132,10 @@ pub trait Road: Sync {
 
     /// The engine and the code path that a maker would use here, for people to read.
     fn engine(&self, simd: Simd) -> String;
+
+    /// The graphics adapters of this machine: how to name each, and a line on it. Nothing if the
+    /// program was built without the graphics engine.
+    fn adapters(&self) -> Option<Vec<(String, String)>>;
 
     /// Loads every asset that ships with the program; a line on each kind.
     ///

@@ -9,14 +9,17 @@ use figurant_core::document::cast::file::{Settled, Source, read_all};
 use figurant_core::document::file::{self, FileError};
 use figurant_core::document::{self, Document, ImageFormat, presets};
 use figurant_core::draw::Cast;
+use figurant_core::engine::Engine;
 use figurant_core::engine::cpu::{CpuEngine, CpuOptions, SimdChoice};
+#[cfg(feature = "gpu")]
+use figurant_core::engine::gpu::{self, GpuEngine, GpuOptions};
 use figurant_core::export::{AssetLicence, DatasetInfo, PictureFormat};
 use figurant_core::job::{FrameError, Studio, catalogue};
 use figurant_core::library::textures::TextureGroup;
 use figurant_core::library::{Library, NO_LICENCE};
 use figurant_core::sampling::Sampler;
 
-use crate::road::{Job, LoadError, Road, Simd, Wishes};
+use crate::road::{EngineKind, EngineWish, Job, LoadError, Road, Simd, Wishes};
 
 /// The road that the program itself walks.
 #[derive(Clone, Copy, Debug, Default)]
@@ -77,14 +80,22 @@ impl Road for Native {
 
     fn maker(&self, job: &Job<Loaded>, threads: NonZeroUsize) -> Result<Studio, FrameError> {
         let Loaded { document, library, cast } = &job.document;
-        let engine = CpuEngine::new(CpuOptions { simd: choice(job.simd), ..CpuOptions::default() });
         let (document, library) = (Arc::clone(document), Arc::clone(library));
-        Studio::new(document, library, Arc::clone(cast), Box::new(engine), threads)
+        Studio::new(document, library, Arc::clone(cast), engine(job)?, threads)
     }
 
     fn engine(&self, simd: Simd) -> String {
         let engine = CpuEngine::new(CpuOptions { simd: choice(simd), ..CpuOptions::default() });
         format!("cpu, {}", engine.simd_name())
+    }
+
+    fn adapters(&self) -> Option<Vec<(String, String)>> {
+        #[cfg(feature = "gpu")]
+        return Some(
+            gpu::adapters().into_iter().map(|a| (a.name.clone(), a.to_string())).collect(),
+        );
+        #[cfg(not(feature = "gpu"))]
+        None
     }
 
     fn built_in_assets(&self) -> Result<Vec<String>, String> {
@@ -112,6 +123,46 @@ const fn choice(simd: Simd) -> SimdChoice {
     }
 }
 
+/// The engine of a job.
+fn engine(job: &Job<Loaded>) -> Result<Box<dyn Engine>, FrameError> {
+    #[cfg(feature = "gpu")]
+    if job.engine.kind == EngineKind::Gpu {
+        let adapter = job.engine.adapter.clone();
+        let options = GpuOptions { adapter, ..GpuOptions::default() };
+        return Ok(Box::new(GpuEngine::new(options)?));
+    }
+    Ok(Box::new(CpuEngine::new(CpuOptions { simd: choice(job.simd), ..CpuOptions::default() })))
+}
+
+/// Settles what renders here: one of the two engines, with the whole name of its adapter.
+#[cfg(feature = "gpu")]
+fn settle(wish: &EngineWish) -> Result<EngineWish, LoadError> {
+    let cpu = EngineWish { kind: EngineKind::Cpu, adapter: None };
+    let options = GpuOptions { adapter: wish.adapter.clone(), ..GpuOptions::default() };
+    match wish.kind {
+        EngineKind::Cpu => Ok(cpu),
+        EngineKind::Auto => Ok(gpu::choice(&options).map_or(cpu, |adapter| EngineWish {
+            kind: EngineKind::Gpu,
+            adapter: Some(adapter.name),
+        })),
+        EngineKind::Gpu => match gpu::choice(&options) {
+            Ok(adapter) => Ok(EngineWish { kind: EngineKind::Gpu, adapter: Some(adapter.name) }),
+            Err(error) => Err(LoadError::NoEngine(error.to_string())),
+        },
+    }
+}
+
+/// Settles what renders here: the native engine, as there is no other.
+#[cfg(not(feature = "gpu"))]
+fn settle(wish: &EngineWish) -> Result<EngineWish, LoadError> {
+    match wish.kind {
+        EngineKind::Gpu => Err(LoadError::NoEngine(
+            "this program was built without the graphics engine; use --engine cpu".to_owned(),
+        )),
+        _ => Ok(EngineWish { kind: EngineKind::Cpu, adapter: None }),
+    }
+}
+
 /// Applies the wishes, loads the library and checks the one against the other.
 fn prepare(
     mut document: Document,
@@ -130,9 +181,11 @@ fn prepare(
     let studio =
         Loaded { document: Arc::new(document), library: Arc::new(library), cast: Arc::default() };
     invalid(Studio::check_assets(&studio.document, &studio.library))?;
+    let engine = settle(&wishes.engine)?;
     Ok(Job {
         frames: studio.document.frames,
-        info: info(&studio, sources),
+        info: info(&studio, sources, &engine),
+        engine,
         simd: wishes.simd,
         document: studio,
     })
@@ -151,7 +204,11 @@ fn apply(wishes: &Wishes, document: &mut Document) {
     }
 }
 
-fn info(Loaded { document, library, .. }: &Loaded, sources: Vec<Source>) -> DatasetInfo {
+fn info(
+    Loaded { document, library, .. }: &Loaded,
+    sources: Vec<Source>,
+    engine: &EngineWish,
+) -> DatasetInfo {
     let of_library = library.licences().into_iter().map(|l| AssetLicence {
         id: l.id,
         content_hash: l.content_hash,
@@ -167,7 +224,8 @@ fn info(Loaded { document, library, .. }: &Loaded, sources: Vec<Source>) -> Data
     DatasetInfo {
         config_json: file::text(document),
         program_version: env!("CARGO_PKG_VERSION").to_owned(),
-        engine: "cpu".to_owned(),
+        engine: if engine.kind == EngineKind::Gpu { "gpu" } else { "cpu" }.to_owned(),
+        adapter: engine.adapter.clone(),
         seed: document.seed,
         width: document.image.width,
         height: document.image.height,

@@ -1,13 +1,15 @@
-//! Time of each stage of the native engine on a fixed scene.
+//! Time of each stage of both engines on a fixed scene.
 //!
 //! `cargo bench -p figurant-tests --bench engine_stages -- [FRAMES] [PICTURE.png]`: medians over
 //! the frames, in milliseconds, for one thread and for all; the picture shows what was measured.
+//! The graphics engine runs on the first adapter there is, if only one of software.
 
 use std::time::Instant;
 
 use figurant_core::draw::DrawList;
 use figurant_core::engine::Engine;
 use figurant_core::engine::cpu::{CpuEngine, CpuOptions, SimdChoice};
+use figurant_core::engine::gpu::{GpuEngine, GpuOptions, adapters};
 use figurant_core::plan::{Output, Outputs, PassPlan, SceneFacts, StageTimes};
 use figurant_tests::crowd::crowd;
 
@@ -18,12 +20,22 @@ fn median(mut values: Vec<f64>) -> f64 {
 
 /// Renders frames and prints the medians of their stages.
 fn measure(name: &str, list: &DrawList, outputs: &[Output], options: CpuOptions, frames: usize) {
+    measure_engine(name, list, outputs, &mut CpuEngine::new(options), frames);
+}
+
+/// As [`measure`], with any engine.
+fn measure_engine(
+    name: &str,
+    list: &DrawList,
+    outputs: &[Output],
+    engine: &mut dyn Engine,
+    frames: usize,
+) {
     let wanted: Outputs = outputs.iter().copied().collect();
     let plan = PassPlan::new(
         &wanted,
         SceneFacts { sun_shadow: list.lights.sun.is_some_and(|s| s.shadow) },
     );
-    let mut engine = CpuEngine::new(options);
     let mut walls = Vec::new();
     let mut stages: Vec<(&'static str, Vec<f64>)> = Vec::new();
     for frame in 0..frames + 2 {
@@ -85,6 +97,18 @@ fn main() {
     list.samples = 4;
     list.lights.sun.as_mut().expect("there is a sun").shadow = false;
     measure("4 samples, all, no shadow", &list, everything, auto, frames);
+
+    if let Some(adapter) = adapters().into_iter().next() {
+        println!("adapter: {adapter}");
+        let options = GpuOptions { adapter: Some(adapter.name), ..GpuOptions::default() };
+        let mut gpu = GpuEngine::new(options).expect("an adapter that was found opens");
+        let mut list = crowd(640, 640, 4, 15_000);
+        measure_engine("gpu, 4 samples, all", &list, everything, &mut gpu, frames);
+        measure_engine("gpu, 4 samples, labels", &list, labels, &mut gpu, frames);
+        list.samples = 1;
+        measure_engine("gpu, 1 sample, all", &list, everything, &mut gpu, frames);
+        measure_engine("gpu, 1 sample, labels", &list, labels, &mut gpu, frames);
+    }
 
     if let Some(path) = arguments.get(1) {
         let list = crowd(640, 640, 4, 15_000);

@@ -7,7 +7,7 @@ use figurant_core::job::FrameMaker;
 
 use crate::args::DoctorArgs;
 use crate::commands::processors;
-use crate::road::{Road, Wishes};
+use crate::road::{EngineKind, EngineWish, Road, Wishes};
 use crate::{Console, Exit, Failure};
 
 /// Checks everything that an export needs and prints a line on each.
@@ -42,12 +42,38 @@ pub fn run<R: Road>(
             page.bad("assets", format!("{text}; the program is damaged, install it again"))
         }
     }
-    match test_frame(road, args) {
+    match test_frame(road, args, EngineWish::default()) {
         Ok(text) => page.good("test frame", text),
         Err(text) => page.bad("test frame", text),
     }
+    graphics(road, args, &mut page);
     console.data(page.text.as_bytes())?;
     Ok(if page.usable { Exit::Done } else { Exit::NoEngine })
+}
+
+/// Lists the graphics adapters and has each render the test frame. None is needed.
+fn graphics<R: Road>(road: &R, args: &DoctorArgs, page: &mut Page) {
+    let Some(adapters) = road.adapters() else {
+        page.good("graphics", "not built in; the native engine renders".to_owned());
+        return;
+    };
+    if adapters.is_empty() {
+        page.good(
+            "graphics",
+            "no adapter was found, so that the native engine renders; for one, install the \
+             driver of your graphics processor with Vulkan (on Debian: mesa-vulkan-drivers \
+             libvulkan1)"
+                .to_owned(),
+        );
+    }
+    for (name, line) in adapters {
+        page.good("graphics", line);
+        let wish = EngineWish { kind: EngineKind::Gpu, adapter: Some(name) };
+        match test_frame(road, args, wish) {
+            Ok(text) => page.good("test frame", text),
+            Err(text) => page.warn("test frame", text),
+        }
+    }
 }
 
 /// Below this, frames of ordinary size for two workers may not fit.
@@ -129,8 +155,8 @@ fn try_disk() -> Result<String, String> {
 }
 
 /// Renders a frame of a config that ships with the program, twice: the first also fills caches.
-fn test_frame<R: Road>(road: &R, args: &DoctorArgs) -> Result<String, String> {
-    let wishes = Wishes { simd: args.simd, ..Wishes::default() };
+fn test_frame<R: Road>(road: &R, args: &DoctorArgs, engine: EngineWish) -> Result<String, String> {
+    let wishes = Wishes { simd: args.simd, engine, ..Wishes::default() };
     let job = road.starter(&wishes).map_err(|e| e.to_string())?;
     let start = Instant::now();
     let mut maker = road.maker(&job, processors()).map_err(|e| e.to_string())?;

@@ -34,7 +34,13 @@ pub fn no_editor(config: Option<&Path>, console: &mut Console<'_>) -> Result<Exi
 
 impl From<&Changes> for Wishes {
     fn from(changes: &Changes) -> Self {
-        Self { seed: changes.seed, size: changes.size, simd: changes.simd, outputs: None }
+        Self {
+            seed: changes.seed,
+            size: changes.size,
+            engine: changes.engine(),
+            simd: changes.simd,
+            outputs: None,
+        }
     }
 }
 
@@ -42,6 +48,7 @@ impl From<&Changes> for Wishes {
 fn not_loaded(config: &Path, error: LoadError) -> Failure {
     match error {
         LoadError::Unreadable(text) => Failure::input(text),
+        LoadError::NoEngine(text) => Failure::new(Exit::NoEngine, text),
         LoadError::Invalid(problems) => Failure::input(listed(config, &problems)),
     }
 }

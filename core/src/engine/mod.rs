@@ -1,12 +1,17 @@
 //! (draw list, pass plan) -> frame. Engines of equal rank behind one trait.
 //!
 //! An engine knows nothing of documents, labels or files. [`cpu`] is native Rust: tiles over
-//! threads, eight-wide portable SIMD, the same bytes on every machine.
+//! threads, eight-wide portable SIMD, the same bytes on every machine. `gpu` (feature `gpu`) runs
+//! the same stages as compute shaders by way of wgpu; what they share is `input`, which says what
+//! a draw list must fulfil.
 
 use crate::draw::DrawList;
 use crate::plan::{Frame, PassPlan, StageTimes};
 
 pub mod cpu;
+#[cfg(feature = "gpu")]
+pub mod gpu;
+mod input;
 
 /// What can go wrong while a frame is rendered.
 #[derive(Debug, thiserror::Error)]
@@ -40,6 +45,33 @@ pub enum EngineError {
         got: u64,
         /// What it should be.
         expected: &'static str,
+    },
+    /// The graphics device ran out of memory.
+    #[error(
+        "{adapter} has no memory left for {what}; use fewer --workers, smaller pictures or \
+         --engine cpu"
+    )]
+    OutOfMemory {
+        /// Name of the adapter.
+        adapter: String,
+        /// What did not fit.
+        what: String,
+    },
+    /// The graphics device went away while it rendered, and again once it was back.
+    #[error("{adapter} was lost while it rendered ({reason}); try again, or use --engine cpu")]
+    DeviceLost {
+        /// Name of the adapter.
+        adapter: String,
+        /// What the driver says.
+        reason: String,
+    },
+    /// The graphics driver refused something.
+    #[error("{adapter} refused to render ({reason}); update its driver, or use --engine cpu")]
+    Driver {
+        /// Name of the adapter.
+        adapter: String,
+        /// What was refused and why.
+        reason: String,
     },
 }
 

@@ -55,6 +55,8 @@ pub struct DatasetInfo {
     pub program_version: String,
     /// Name of the engine, as on the command line.
     pub engine: String,
+    /// The graphics adapter, where one rendered.
+    pub adapter: Option<String>,
     /// The document's seed.
     pub seed: u64,
     /// Pixels.
@@ -75,6 +77,8 @@ struct File<'a> {
     program: &'static str,
     program_version: &'a str,
     engine: &'a str,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    adapter: Option<&'a str>,
     config_hash: String,
     seed: u64,
     width: u32,
@@ -106,6 +110,7 @@ pub(super) fn to_json(info: &DatasetInfo, done: &FrameSet, identities: &[Identit
         program: "figurant",
         program_version: &info.program_version,
         engine: &info.engine,
+        adapter: info.adapter.as_deref(),
         config_hash: crate::base::hash::content_hash(info.config_json.as_bytes()),
         seed: info.seed,
         width: info.width,

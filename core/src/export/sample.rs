@@ -23,6 +23,7 @@ pub fn info(outputs: Outputs, picture: PictureFormat) -> DatasetInfo {
         config_json: "{\"version\": 1}\n".to_owned(),
         program_version: "0.0.0".to_owned(),
         engine: "cpu".to_owned(),
+        adapter: None,
         seed: 42,
         width: WIDTH,
         height: HEIGHT,

@@ -29,6 +29,10 @@ pub enum FrameError {
     /// No threads could be had.
     #[error(transparent)]
     Threads(#[from] ThreadError),
+    /// The graphics engine cannot be had.
+    #[cfg(feature = "gpu")]
+    #[error(transparent)]
+    Adapter(#[from] crate::engine::gpu::GpuError),
     /// The engine refused.
     #[error("rendering: {0}")]
     Engine(#[from] EngineError),

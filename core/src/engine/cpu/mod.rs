@@ -21,7 +21,6 @@ mod chunk;
 mod clip;
 mod display;
 mod fragment;
-mod input;
 mod project;
 mod raster;
 mod reduce;
@@ -47,7 +46,7 @@ use self::shadow::map::{ShadowMap, SunShadow};
 use self::shadow::{Bounds, ShadowView, SunAxes};
 use self::simd::{F32x8, Level};
 use self::tile::{Row, Scratch, Shading, TilePass};
-use super::{Engine, EngineError};
+use super::{Engine, EngineError, input};
 use crate::draw::DrawList;
 use crate::plan::{Frame, ObjectSamples, Pass, PassPlan, StageTimes};
 

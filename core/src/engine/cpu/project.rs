@@ -12,8 +12,6 @@ pub(super) const SCREEN_BITS: u32 = 16;
 /// largest picture it bounds every coordinate difference to 2^14 pixels, on which the exactness of
 /// the raster's integers rests.
 pub(super) const GUARD_PX: f64 = 4096.0;
-/// Largest side of a picture or shadow map in pixels.
-pub(super) const MAX_SIDE: u32 = 8192;
 
 /// A placed vertex: view-space position and u, view-space unit normal and v. The eight numbers
 /// fill one vector register, so that all are interpolated at once.

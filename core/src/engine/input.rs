@@ -1,12 +1,13 @@
 //! What a draw list must fulfil before anything is computed from it: sizes, references, finite
 //! numbers. Placed vertices are checked where they are made.
 
-use super::project::MAX_SIDE;
+use super::EngineError;
 use crate::draw::DrawList;
 use crate::draw::abi::{Draw, Material};
-use crate::engine::EngineError;
 use crate::library::texture::Texture;
 
+/// Largest side of a picture or shadow map in pixels.
+pub(super) const MAX_SIDE: u32 = 8192;
 /// Objects that fit the 16-bit ids.
 const MAX_OBJECTS: u64 = 65_534;
 /// In [`EngineError::NotFinite`]: not an object.

@@ -1,0 +1,161 @@
+//! A device with its pipelines, and what went wrong with it.
+
+use std::collections::BTreeMap;
+use std::sync::{Arc, Mutex, PoisonError};
+
+use super::adapter::{self, GpuError, GpuOptions};
+use super::stage::{Access, Stage};
+use crate::engine::EngineError;
+
+/// What a driver told us out of turn.
+#[derive(Default)]
+struct Faults {
+    lost: Option<String>,
+    out_of_memory: Option<String>,
+    other: Option<String>,
+}
+
+/// An open device.
+pub struct Device {
+    pub name: String,
+    pub device: wgpu::Device,
+    pub queue: wgpu::Queue,
+    pub limits: wgpu::Limits,
+    /// Whether stages can be timed.
+    pub timed: bool,
+    faults: Arc<Mutex<Faults>>,
+    pipelines: BTreeMap<(Stage, u32), wgpu::ComputePipeline>,
+}
+
+impl Device {
+    /// Opens the adapter that the options name.
+    pub fn open(options: &GpuOptions) -> Result<Self, GpuError> {
+        let instance = adapter::instance();
+        let adapter = adapter::choose(&instance, options)?;
+        let name = adapter.get_info().name;
+        let limits =
+            if options.minimum_limits { wgpu::Limits::defaults() } else { adapter.limits() };
+        let timed = adapter.features().contains(wgpu::Features::TIMESTAMP_QUERY);
+        let features =
+            if timed { wgpu::Features::TIMESTAMP_QUERY } else { wgpu::Features::empty() };
+        let (device, queue) = adapter::block_on(adapter.request_device(&wgpu::DeviceDescriptor {
+            label: Some("figurant"),
+            required_features: features,
+            required_limits: limits,
+            ..Default::default()
+        }))
+        .map_err(|e| GpuError::Refused { adapter: name.clone(), reason: e.to_string() })?;
+        let faults = Arc::new(Mutex::new(Faults::default()));
+        watch(&device, &faults);
+        let limits = device.limits();
+        Ok(Self { name, device, queue, limits, timed, faults, pipelines: BTreeMap::new() })
+    }
+
+    /// Whether the device went away.
+    pub fn lost(&self) -> Option<String> {
+        self.faults.lock().unwrap_or_else(PoisonError::into_inner).lost.clone()
+    }
+
+    /// What went wrong since the last call, if anything did.
+    pub fn fault(&self) -> Result<(), EngineError> {
+        let mut faults = self.faults.lock().unwrap_or_else(PoisonError::into_inner);
+        let adapter = self.name.clone();
+        if let Some(reason) = faults.lost.clone() {
+            return Err(EngineError::DeviceLost { adapter, reason });
+        }
+        if let Some(what) = faults.out_of_memory.take() {
+            return Err(EngineError::OutOfMemory { adapter, what });
+        }
+        match faults.other.take() {
+            Some(reason) => Err(EngineError::Driver { adapter, reason }),
+            None => Ok(()),
+        }
+    }
+
+    /// Largest buffer that shaders can be given, bytes.
+    pub fn largest_buffer(&self) -> u64 {
+        self.limits.max_storage_buffer_binding_size.min(self.limits.max_buffer_size)
+    }
+
+    /// The pipeline of a stage for so many samples a pixel; compiled when first asked for.
+    pub fn pipeline(&mut self, stage: Stage, samples: u32) -> &wgpu::ComputePipeline {
+        let samples = if stage.by_samples() { samples } else { 1 };
+        let device = &self.device;
+        self.pipelines.entry((stage, samples)).or_insert_with(|| compile(device, stage, samples))
+    }
+}
+
+/// Has faults written down instead of ending the program.
+fn watch(device: &wgpu::Device, faults: &Arc<Mutex<Faults>>) {
+    let kept = Arc::clone(faults);
+    device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| {
+        let mut faults = kept.lock().unwrap_or_else(PoisonError::into_inner);
+        let place = match &error {
+            wgpu::Error::OutOfMemory { .. } => &mut faults.out_of_memory,
+            _ => &mut faults.other,
+        };
+        place.get_or_insert_with(|| error.to_string());
+    }));
+    let kept = Arc::clone(faults);
+    device.set_device_lost_callback(move |reason, message| {
+        let mut faults = kept.lock().unwrap_or_else(PoisonError::into_inner);
+        let text = if message.is_empty() { format!("{reason:?}") } else { message };
+        faults.lost.get_or_insert(text);
+    });
+}
+
+fn compile(device: &wgpu::Device, stage: Stage, samples: u32) -> wgpu::ComputePipeline {
+    let label = format!("{stage:?} {samples}");
+    let module = module(device, stage, samples, &label);
+    let entries: Vec<_> = (0..)
+        .zip(stage.bindings())
+        .map(|(binding, (_, access))| wgpu::BindGroupLayoutEntry {
+            binding,
+            visibility: wgpu::ShaderStages::COMPUTE,
+            ty: wgpu::BindingType::Buffer {
+                ty: match access {
+                    Access::Uniform => wgpu::BufferBindingType::Uniform,
+                    Access::Read => wgpu::BufferBindingType::Storage { read_only: true },
+                    Access::Write => wgpu::BufferBindingType::Storage { read_only: false },
+                },
+                has_dynamic_offset: false,
+                min_binding_size: None,
+            },
+            count: None,
+        })
+        .collect();
+    let group = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+        label: Some(&label),
+        entries: &entries,
+    });
+    let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+        label: Some(&label),
+        bind_group_layouts: &[Some(&group)],
+        immediate_size: 0,
+    });
+    device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+        label: Some(&label),
+        layout: Some(&layout),
+        module: &module,
+        entry_point: Some(stage.entry()),
+        compilation_options: wgpu::PipelineCompilationOptions::default(),
+        cache: None,
+    })
+}
+
+fn module(device: &wgpu::Device, stage: Stage, samples: u32, label: &str) -> wgpu::ShaderModule {
+    let descriptor = wgpu::ShaderModuleDescriptor {
+        label: Some(label),
+        source: wgpu::ShaderSource::Wgsl(stage.source(samples).into()),
+    };
+    let checks = wgpu::ShaderRuntimeChecks {
+        force_loop_bounding: false,
+        ..wgpu::ShaderRuntimeChecks::checked()
+    };
+    #[expect(unsafe_code, reason = "loops that count their own end cannot be unrolled")]
+    // SAFETY: every loop of our shaders counts up to a number that was read before it starts;
+    // all other checks stay on.
+    unsafe {
+        device.create_shader_module_trusted(descriptor, checks)
+    }
+}

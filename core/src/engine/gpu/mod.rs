@@ -1,0 +1,383 @@
+//! The graphics engine: the native engine's stages as compute shaders, by way of wgpu.
+//!
+//! | stage | shader | in -> out |
+//! |---|---|---|
+//! | skin | `skin` | meshes, palette -> placed and projected vertices |
+//! | visibility | `setup`, `clip`, `bin`, `scan` | -> triangles by tile |
+//! | shadow | `bound`, `fit`, `project`, `sun_setup`, `clip`, `shadow` | -> the sun's depth map |
+//! | visibility | `raster` | -> triangle and depth of each sample |
+//! | shade, display | `shade` | -> the 8-bit picture |
+//! | resolve, reduce | `resolve`, `reduce` | -> ids, distances, counts, extents |
+//!
+//! Everything is computed, nothing drawn by fixed hardware: snapping, tie rules, sample positions
+//! and formulas are those of the native engine, so that both show the same to a thousandth of a
+//! pixel on every device with compute shaders. A picture whose samples do not fit one buffer is
+//! rendered in bands. Meshes and textures stay on the device ([`pool`]); all other buffers are kept
+//! from frame to frame. Only what the plan asks for is read back.
+//!
+//! Lists of triangles are made in any order, but no result depends on it: the nearest sample wins,
+//! of equals the earlier drawn.
+
+mod abi;
+mod adapter;
+mod buffers;
+mod device;
+mod pack;
+mod pool;
+mod readback;
+mod record;
+mod stage;
+
+pub use adapter::{AdapterReport, GpuError, GpuOptions, adapters, choice};
+
+use std::sync::Arc;
+use std::time::Instant;
+
+use self::abi::{Bounds, Counters, LARGE_ROOM, ObjectSums, Primitive};
+use self::buffers::Buffers;
+use self::device::Device;
+use self::pack::{Packed, Wanted};
+use self::pool::Pool;
+use self::readback::{Band, Counted, Readback};
+use self::record::{Clock, Recorder};
+use self::stage::{Resource, Stage};
+use super::{Engine, EngineError, input};
+use crate::draw::DrawList;
+use crate::library::mesh::Mesh;
+use crate::library::texture::Texture;
+use crate::plan::{Frame, ObjectSamples, Pass, PassPlan, StageTimes};
+
+/// How often a frame is tried anew with more room for triangles: what is needed is known after
+/// the first try, but for the sun's map, of which it is known after the second.
+const TRIES: usize = 4;
+
+/// Renders draw lists on a graphics device. Keeps its buffers from frame to frame.
+pub struct GpuEngine {
+    options: GpuOptions,
+    state: State,
+}
+
+impl GpuEngine {
+    /// Opens the adapter that the options name.
+    ///
+    /// # Errors
+    /// When there is none, or it gives no device.
+    pub fn new(options: GpuOptions) -> Result<Self, GpuError> {
+        let state = State::open(&options)?;
+        Ok(Self { options, state })
+    }
+
+    /// The name of the adapter in use.
+    #[must_use]
+    pub fn adapter_name(&self) -> &str {
+        &self.state.device.name
+    }
+
+    /// Takes the device away, as a driver that fails does. The next frame opens it anew.
+    pub fn lose_device(&mut self) {
+        self.state.device.device.destroy();
+    }
+
+    /// Opens the device again, with nothing on it.
+    fn reopen(&mut self, lost: EngineError) -> Result<(), EngineError> {
+        match State::open(&self.options) {
+            Ok(state) => {
+                self.state = state;
+                Ok(())
+            }
+            Err(_) => Err(lost),
+        }
+    }
+}
+
+impl Engine for GpuEngine {
+    fn render(
+        &mut self,
+        list: &DrawList,
+        plan: &PassPlan,
+        times: &mut StageTimes,
+    ) -> Result<Frame, EngineError> {
+        times.measure("check", || input::check(list))?;
+        match self.state.render(list, plan, times) {
+            Err(lost @ EngineError::DeviceLost { .. }) => {
+                self.reopen(lost)?;
+                self.state.render(list, plan, times)
+            }
+            Err(other) => {
+                // An error may come with the loss of the device, which is told a moment later.
+                match self.state.device.lost() {
+                    Some(_) => {
+                        self.reopen(other)?;
+                        self.state.render(list, plan, times)
+                    }
+                    None => Err(other),
+                }
+            }
+            good => good,
+        }
+    }
+}
+
+/// An open device with everything that lives on it.
+struct State {
+    device: Device,
+    buffers: Buffers,
+    meshes: Pool<Mesh>,
+    textures: Pool<Texture>,
+    packed: Packed,
+    readback: Readback,
+    clock: Option<Clock>,
+    room: Room,
+}
+
+/// How much room triangles are given; grows when a frame needs more.
+#[derive(Clone, Copy, Debug, Default)]
+struct Room {
+    primitives: [u64; 2],
+    entries: u64,
+}
+
+impl Room {
+    /// Grows to what was counted; whether that was needed.
+    fn grow(&mut self, counted: &Counted) -> bool {
+        let mut grew = false;
+        for (room, counters) in self.primitives.iter_mut().zip(counted) {
+            let needed = u64::from(counters.primitives);
+            if needed > *room {
+                (*room, grew) = (needed + needed / 4, true);
+            }
+        }
+        let needed = u64::from(counted.iter().map(|c| c.entries).max().unwrap_or(0));
+        if needed > self.entries {
+            (self.entries, grew) = (needed + needed / 4, true);
+        }
+        grew
+    }
+}
+
+impl State {
+    fn open(options: &GpuOptions) -> Result<Self, GpuError> {
+        let device = Device::open(options)?;
+        Ok(Self {
+            clock: device.timed.then(|| Clock::new(&device)),
+            device,
+            buffers: Buffers::default(),
+            meshes: Pool::new("graphics memory of meshes"),
+            textures: Pool::new("graphics memory of textures"),
+            packed: Packed::default(),
+            readback: Readback::default(),
+            room: Room::default(),
+        })
+    }
+
+    fn render(
+        &mut self,
+        list: &DrawList,
+        plan: &PassPlan,
+        times: &mut StageTimes,
+    ) -> Result<Frame, EngineError> {
+        let (width, height) = (list.view.width, list.view.height);
+        let mut frame = Frame { width, height, ..Frame::default() };
+        if !plan.runs(Pass::Visibility) {
+            return Ok(frame);
+        }
+        let pixels = width as usize * height as usize;
+        let (resolves, reduces) = (plan.runs(Pass::Resolve), plan.runs(Pass::Reduce));
+        frame.picture = plan.runs(Pass::Display).then(|| vec![0; pixels * 3]);
+        frame.object_ids = resolves.then(|| vec![0; pixels]);
+        frame.depth_m = resolves.then(|| vec![0.0; pixels]);
+        frame.object_samples = reduces.then(|| vec![ObjectSamples::default(); list.objects.len()]);
+        let sun = list.lights.sun.is_some_and(|sun| sun.shadow);
+        let shadow = sun && plan.runs(Pass::Shadow) && list.shadow_map_size > 0;
+        times.measure("upload", || self.upload(list, plan, shadow))?;
+        for _ in 0..TRIES {
+            if self.bands(list, plan, shadow, &mut frame, times)? {
+                return Ok(frame);
+            }
+        }
+        let (what, got) = ("number of triangles by tile", self.room.entries);
+        Err(EngineError::TooLarge { what, got, limit: self.device.largest_buffer() / 4 })
+    }
+
+    /// Brings meshes and textures to the device and packs the rest of the draw list.
+    fn upload(
+        &mut self,
+        list: &DrawList,
+        plan: &PassPlan,
+        shadow: bool,
+    ) -> Result<(), EngineError> {
+        let device = &self.device;
+        let wanted = Wanted::new(list, shadow);
+        let needed = |i: &usize| wanted.any(*i);
+        let used = (0..list.objects.len()).filter(needed).map(|i| &list.objects[i].mesh);
+        self.meshes.begin(device, used);
+        let mut mesh_places = vec![0; list.objects.len()];
+        for i in (0..list.objects.len()).filter(needed) {
+            let mesh = &list.objects[i].mesh;
+            let words = pack::mesh_words(mesh);
+            mesh_places[i] = self.meshes.place(device, mesh, words, pack::mesh_content)?;
+        }
+        let shaded: &[Arc<Texture>] = if plan.runs(Pass::Shade) { &list.textures } else { &[] };
+        self.textures.begin(device, shaded.iter());
+        let mut texture_places = vec![0; list.textures.len()];
+        for (place, texture) in texture_places.iter_mut().zip(shaded) {
+            let words = texture.texels.len() as u64;
+            *place = self.textures.place(device, texture, words, |t| t.texels.clone())?;
+        }
+        self.packed.fill(list, &wanted, shadow, [&mesh_places, &texture_places]);
+        self.write(list, shadow)
+    }
+
+    /// Writes the packed records, and makes room for what depends on their number.
+    fn write(&mut self, list: &DrawList, shadow: bool) -> Result<(), EngineError> {
+        let (device, buffers, packed) = (&self.device, &mut self.buffers, &self.packed);
+        for (resource, pool) in
+            [(Resource::Meshes, self.meshes.buffer()), (Resource::Texels, self.textures.buffer())]
+        {
+            if let Some(buffer) = pool {
+                buffers.put(resource, buffer.clone());
+            }
+        }
+        buffers.write(device, Resource::Frame, &[packed.frame])?;
+        buffers.write(device, Resource::VertexBatches, &packed.vertex_batches)?;
+        buffers.write(device, Resource::Batches, &packed.batches)?;
+        buffers.write(device, Resource::SunBatches, &packed.sun_batches)?;
+        buffers.write(device, Resource::Palette, &packed.palette)?;
+        buffers.write(device, Resource::Surfaces, &packed.surfaces)?;
+        buffers.write(device, Resource::Lights, &packed.lights)?;
+        let sun = pack::sun_target(packed);
+        buffers.write(device, Resource::SunTarget, &[sun])?;
+        let objects = list.objects.len() as u64;
+        let vertices = u64::from(packed.vertices);
+        buffers.ensure(device, Resource::Vertices, vertices * size_of::<abi::Vertex>() as u64)?;
+        buffers.ensure(
+            device,
+            Resource::Screen,
+            vertices * size_of::<abi::ScreenVertex>() as u64,
+        )?;
+        buffers.ensure(device, Resource::Bounds, (objects + 1) * size_of::<Bounds>() as u64)?;
+        buffers.ensure(device, Resource::Sums, objects * size_of::<ObjectSums>() as u64)?;
+        buffers.ensure(device, Resource::Counters, size_of::<Counters>() as u64)?;
+        buffers.ensure(device, Resource::SunCounters, size_of::<Counters>() as u64)?;
+        let texels = if shadow { u64::from(list.shadow_map_size).pow(2) } else { 0 };
+        let header = size_of::<abi::SunView>() as u64;
+        buffers.ensure(device, Resource::ShadowMap, header + texels * 4)?;
+        // About half of the triangles of closed surfaces face away.
+        for (room, triangles) in self.room.primitives.iter_mut().zip(packed.triangles) {
+            *room = (*room).max(u64::from(triangles) / 2 + 4096);
+        }
+        let triangles = u64::from(packed.triangles.into_iter().max().unwrap_or(0));
+        buffers.ensure(device, Resource::Crossing, triangles * 4)?;
+        self.room.entries = self.room.entries.max(triangles * 2 + u64::from(LARGE_ROOM) * 4);
+        Ok(())
+    }
+
+    /// Renders band after band; false if there was too little room, of which there is more now.
+    fn bands(
+        &mut self,
+        list: &DrawList,
+        plan: &PassPlan,
+        shadow: bool,
+        frame: &mut Frame,
+        times: &mut StageTimes,
+    ) -> Result<bool, EngineError> {
+        let rows = self.band_rows(list)?;
+        self.make_room(list, rows)?;
+        for first_y in (0..list.view.height).step_by(rows as usize) {
+            let rows = rows.min(list.view.height - first_y);
+            let band = Band { first_y, rows, last: first_y + rows == list.view.height };
+            times.measure("submit", || self.submit(list, plan, shadow, band))?;
+            let start = Instant::now();
+            let mut ticks = [0; 2 * Stage::ALL.len()];
+            let counted = self.readback.take(&self.device, band, frame, &mut ticks)?;
+            let waited = start.elapsed();
+            match &self.clock {
+                Some(clock) => clock.report(&ticks, waited, times),
+                None => times.add("wait for the device", waited),
+            }
+            if counted[0].bad_object != 0 {
+                let object = u32::MAX - counted[0].bad_object;
+                return Err(EngineError::NotFinite { object, what: "a placed vertex" });
+            }
+            if self.room.grow(&counted) {
+                return Ok(false);
+            }
+        }
+        Ok(true)
+    }
+
+    /// Rows of pixels of a band, a multiple of the tile's, such that everything by pixel fits.
+    fn band_rows(&self, list: &DrawList) -> Result<u32, EngineError> {
+        let limit = self.device.largest_buffer();
+        let per_row = u64::from(list.view.width) * 8 * u64::from(list.samples);
+        let staging = u64::from(list.view.width) * 12 + 1;
+        let rows = (limit / per_row).min(self.device.limits.max_buffer_size / 2 / staging);
+        let rows = rows.min(8192) as u32 / abi::TILE * abi::TILE;
+        if rows == 0 {
+            let got = per_row * u64::from(abi::TILE);
+            return Err(EngineError::TooLarge {
+                what: "graphics memory of a row of tiles",
+                got,
+                limit,
+            });
+        }
+        Ok(rows)
+    }
+
+    /// Makes room for what depends on the size of the picture and the number of triangles.
+    fn make_room(&mut self, list: &DrawList, rows: u32) -> Result<(), EngineError> {
+        let (device, buffers) = (&self.device, &mut self.buffers);
+        let width = u64::from(list.view.width);
+        let rows = u64::from(rows.min(list.view.height));
+        let primitive = size_of::<Primitive>() as u64;
+        let [picture, sun] = self.room.primitives;
+        buffers.ensure(device, Resource::Primitives, picture * primitive)?;
+        buffers.ensure(device, Resource::SunPrimitives, sun * primitive)?;
+        buffers.ensure(device, Resource::Lists, self.room.entries * 4)?;
+        buffers.ensure(device, Resource::Samples, width * rows * u64::from(list.samples) * 8)?;
+        buffers.ensure(device, Resource::Picture, width * rows * 4)?;
+        buffers.ensure(device, Resource::Resolved, width * rows * 8)?;
+        let tile = u64::from(abi::TILE);
+        let tiles = width.div_ceil(tile) * rows.div_ceil(tile);
+        // A list of small primitives and one of others for each.
+        buffers.ensure(device, Resource::Tiles, tiles * 2 * size_of::<abi::Tile>() as u64)?;
+        Ok(())
+    }
+
+    /// Records the passes of a band and sends them off.
+    fn submit(
+        &mut self,
+        list: &DrawList,
+        plan: &PassPlan,
+        shadow: bool,
+        band: Band,
+    ) -> Result<(), EngineError> {
+        let target = pack::picture_target(list, &self.packed, band.first_y, band.rows);
+        self.buffers.write(&self.device, Resource::Target, &[target])?;
+        let mut encoder = self.device.device.create_command_encoder(&Default::default());
+        let mut recorder = Recorder {
+            device: &mut self.device,
+            buffers: &mut self.buffers,
+            clock: self.clock.as_mut(),
+            encoder: &mut encoder,
+            samples: list.samples,
+            target: &target,
+            triangles: self.packed.triangles[0],
+        };
+        recorder.start();
+        if band.first_y == 0 {
+            recorder.geometry();
+            if shadow {
+                recorder.shadow(self.packed.sun_batches.len() as u32);
+            }
+        }
+        recorder.visibility();
+        recorder.outputs(plan);
+        recorder.finish();
+        let timings = self.clock.as_ref().map(|c| &c.resolved);
+        let what = (plan, list.view.width, list.objects.len());
+        self.readback.record(&self.device, &mut encoder, &self.buffers, what, band, timings)?;
+        self.device.queue.submit([encoder.finish()]);
+        Ok(())
+    }
+}

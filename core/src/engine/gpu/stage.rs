@@ -1,0 +1,392 @@
+//! The stages: which shader each is, what it reads and writes, and its source text.
+//!
+//! A shader is plain text: the constants of its variant, the shared files that it needs, and its
+//! own file. Texts are embedded; nothing is read at run time.
+
+/// A file of the folder of shaders.
+macro_rules! file {
+    ($name:literal) => {
+        ($name, include_str!(concat!("../../../../shaders/", $name)))
+    };
+}
+/// A buffer that stages read or write.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Resource {
+    /// [`super::abi::Frame`].
+    Frame,
+    /// [`super::abi::Target`] of the camera's picture, and of the sun's map.
+    Target,
+    SunTarget,
+    VertexBatches,
+    Batches,
+    SunBatches,
+    Meshes,
+    Texels,
+    Palette,
+    Surfaces,
+    Lights,
+    Vertices,
+    Screen,
+    Primitives,
+    SunPrimitives,
+    Counters,
+    SunCounters,
+    Bounds,
+    /// Triangles that are left to the clipping, of the picture, then of the sun's map.
+    Crossing,
+    Tiles,
+    Lists,
+    Samples,
+    /// [`super::abi::SunView`], then texels.
+    ShadowMap,
+    Picture,
+    Resolved,
+    Sums,
+}
+
+/// How a stage uses a buffer.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Access {
+    /// A small read-only block.
+    Uniform,
+    /// Storage.
+    Read,
+    /// Storage.
+    Write,
+}
+
+/// A compute shader with its buffers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Stage {
+    Skin,
+    Setup,
+    Clip,
+    Bound,
+    Fit,
+    Project,
+    SunSetup,
+    SunClip,
+    Shadow,
+    Count,
+    Scan,
+    Scatter,
+    Raster,
+    Resolve,
+    Reduce,
+    Shade,
+}
+
+use Access::{Read, Uniform, Write};
+use Resource as R;
+
+impl Stage {
+    /// All stages in the order in which a frame runs them.
+    pub const ALL: [Self; 16] = [
+        Self::Skin,
+        Self::Setup,
+        Self::Clip,
+        Self::Bound,
+        Self::Fit,
+        Self::Project,
+        Self::SunSetup,
+        Self::SunClip,
+        Self::Shadow,
+        Self::Count,
+        Self::Scan,
+        Self::Scatter,
+        Self::Raster,
+        Self::Resolve,
+        Self::Reduce,
+        Self::Shade,
+    ];
+
+    /// The name in lists of times.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Skin => "skin",
+            Self::Setup | Self::Clip => "setup",
+            Self::Bound | Self::Fit => "shadow fit",
+            Self::Project | Self::SunSetup | Self::SunClip => "shadow setup",
+            Self::Shadow => "shadow raster",
+            Self::Count | Self::Scan | Self::Scatter => "bin",
+            Self::Raster => "raster",
+            Self::Resolve => "resolve",
+            Self::Reduce => "reduce",
+            Self::Shade => "shade",
+        }
+    }
+
+    /// The shader's entry point.
+    pub const fn entry(self) -> &'static str {
+        match self {
+            Self::Count => "count",
+            Self::Scatter => "scatter",
+            _ => "main",
+        }
+    }
+
+    /// Whether there is a form of it for each number of samples a pixel.
+    pub const fn by_samples(self) -> bool {
+        matches!(self, Self::Raster | Self::Resolve | Self::Reduce | Self::Shade)
+    }
+
+    /// What stands at each binding.
+    pub const fn bindings(self) -> &'static [(Resource, Access)] {
+        match self {
+            Self::Skin => &[
+                (R::Frame, Uniform),
+                (R::Target, Read),
+                (R::VertexBatches, Read),
+                (R::Meshes, Read),
+                (R::Palette, Read),
+                (R::Vertices, Write),
+                (R::Screen, Write),
+                (R::Counters, Write),
+            ],
+            Self::Setup => &[
+                (R::Frame, Uniform),
+                (R::Target, Read),
+                (R::Batches, Read),
+                (R::Meshes, Read),
+                (R::Screen, Read),
+                (R::Primitives, Write),
+                (R::Counters, Write),
+                (R::Crossing, Write),
+            ],
+            Self::SunSetup => &[
+                (R::Frame, Uniform),
+                (R::SunTarget, Read),
+                (R::SunBatches, Read),
+                (R::Meshes, Read),
+                (R::Screen, Read),
+                (R::SunPrimitives, Write),
+                (R::SunCounters, Write),
+                (R::Crossing, Write),
+                (R::ShadowMap, Write),
+            ],
+            Self::Clip => &[
+                (R::Frame, Uniform),
+                (R::Target, Read),
+                (R::Batches, Read),
+                (R::Meshes, Read),
+                (R::Vertices, Read),
+                (R::Primitives, Write),
+                (R::Counters, Write),
+                (R::Crossing, Read),
+                (R::Bounds, Write),
+            ],
+            Self::SunClip => &[
+                (R::Frame, Uniform),
+                (R::SunTarget, Read),
+                (R::SunBatches, Read),
+                (R::Meshes, Read),
+                (R::Vertices, Read),
+                (R::SunPrimitives, Write),
+                (R::SunCounters, Write),
+                (R::Crossing, Read),
+                (R::Bounds, Write),
+            ],
+            Self::Bound => &[
+                (R::Frame, Uniform),
+                (R::Target, Read),
+                (R::VertexBatches, Read),
+                (R::Vertices, Read),
+                (R::Screen, Read),
+                (R::Bounds, Write),
+            ],
+            Self::Fit => &[
+                (R::Frame, Uniform),
+                (R::Bounds, Write),
+                (R::SunTarget, Write),
+                (R::ShadowMap, Write),
+            ],
+            Self::Project => &[
+                (R::Frame, Uniform),
+                (R::SunTarget, Read),
+                (R::VertexBatches, Read),
+                (R::Vertices, Read),
+                (R::Screen, Write),
+                (R::Bounds, Read),
+            ],
+            Self::Count | Self::Scatter => &[
+                (R::Frame, Uniform),
+                (R::Target, Read),
+                (R::Primitives, Write),
+                (R::Counters, Write),
+                (R::Tiles, Write),
+                (R::Lists, Write),
+            ],
+            Self::Scan => {
+                &[(R::Frame, Uniform), (R::Target, Read), (R::Tiles, Write), (R::Counters, Write)]
+            }
+            Self::Raster => &[
+                (R::Frame, Uniform),
+                (R::Target, Read),
+                (R::Primitives, Read),
+                (R::Counters, Read),
+                (R::Tiles, Read),
+                (R::Lists, Read),
+                (R::Samples, Write),
+            ],
+            Self::Shadow => &[
+                (R::Frame, Uniform),
+                (R::SunTarget, Read),
+                (R::SunPrimitives, Read),
+                (R::SunCounters, Read),
+                (R::ShadowMap, Write),
+            ],
+            Self::Resolve => &[
+                (R::Frame, Uniform),
+                (R::Target, Read),
+                (R::Primitives, Read),
+                (R::Surfaces, Read),
+                (R::Samples, Read),
+                (R::Resolved, Write),
+            ],
+            Self::Reduce => &[
+                (R::Frame, Uniform),
+                (R::Target, Read),
+                (R::Primitives, Read),
+                (R::Surfaces, Read),
+                (R::Samples, Read),
+                (R::Sums, Write),
+            ],
+            Self::Shade => &[
+                (R::Frame, Uniform),
+                (R::Target, Uniform),
+                (R::Primitives, Read),
+                (R::Surfaces, Read),
+                (R::Vertices, Read),
+                (R::Samples, Read),
+                (R::Texels, Read),
+                (R::Lights, Read),
+                (R::ShadowMap, Read),
+                (R::Picture, Write),
+            ],
+        }
+    }
+
+    /// The whole text of its shader, for so many samples a pixel where that matters.
+    pub fn source(self, samples: u32) -> String {
+        let mut text = constants(if self.by_samples() { samples } else { 1 });
+        for file in self.files() {
+            text += &text_of(*file);
+            text.push('\n');
+        }
+        text
+    }
+
+    /// Its files, each after those that it needs.
+    fn files(self) -> &'static [File] {
+        match self {
+            Self::Skin => &[ABI, DOUBLE, PROJECT, file!("skin.wgsl")],
+            Self::Project => &[ABI, DOUBLE, PROJECT, file!("project.wgsl")],
+            Self::Bound => &[ABI, BOUNDS, file!("bound.wgsl")],
+            Self::Fit => &[ABI, DOUBLE, BOUNDS, file!("fit.wgsl")],
+            Self::Setup => &[ABI, WIDE, TRIANGLE, file!("setup.wgsl")],
+            Self::SunSetup => &[ABI, WIDE, EDGE, TRIANGLE, file!("sun_setup.wgsl")],
+            Self::Clip | Self::SunClip => {
+                &[ABI, DOUBLE, WIDE, PROJECT, BOUNDS, TRIANGLE, file!("clip.wgsl")]
+            }
+            Self::Count | Self::Scatter => &[ABI, file!("bin.wgsl")],
+            Self::Scan => &[ABI, file!("scan.wgsl")],
+            Self::Raster => &[ABI, WIDE, EDGE, RASTER, file!("raster.wgsl")],
+            Self::Shadow => &[ABI, WIDE, EDGE, file!("shadow.wgsl")],
+            Self::Resolve => &[ABI, file!("resolve.wgsl")],
+            Self::Reduce => &[ABI, file!("reduce.wgsl")],
+            Self::Shade => &[
+                ABI,
+                file!("shared/texture.wgsl"),
+                file!("shared/surface.wgsl"),
+                file!("shared/material.wgsl"),
+                file!("shared/sunlight.wgsl"),
+                file!("shared/light.wgsl"),
+                file!("shared/display.wgsl"),
+                file!("shade.wgsl"),
+            ],
+        }
+    }
+}
+
+/// Name and text of a file of the folder of shaders.
+type File = (&'static str, &'static str);
+
+const ABI: File = file!("shared/abi.wgsl");
+const DOUBLE: File = file!("shared/double.wgsl");
+const WIDE: File = file!("shared/wide.wgsl");
+const PROJECT: File = file!("shared/project.wgsl");
+const BOUNDS: File = file!("shared/bounds.wgsl");
+const TRIANGLE: File = file!("shared/triangle.wgsl");
+const EDGE: File = file!("shared/edge.wgsl");
+const RASTER: File = file!("shared/raster.wgsl");
+
+/// The text of a file. Debug builds take it from the folder that `FIGURANT_SHADERS` names, so that
+/// shaders can be worked on without building anew.
+fn text_of((name, text): File) -> String {
+    if cfg!(debug_assertions)
+        && let Some(folder) = std::env::var_os("FIGURANT_SHADERS")
+        && let Ok(changed) = std::fs::read_to_string(std::path::Path::new(&folder).join(name))
+    {
+        return changed;
+    }
+    text.to_owned()
+}
+
+/// Positions of the samples of a pixel in 1/16 pixel: the centre, a rotated grid, or sixteen rooks
+/// with the offsets of Direct3D's standard pattern.
+pub fn sample_positions(samples: u32) -> &'static [[i32; 2]] {
+    const SIXTEEN: [[i32; 2]; 16] = [
+        [9, 9],
+        [7, 5],
+        [5, 10],
+        [12, 7],
+        [3, 6],
+        [10, 13],
+        [13, 11],
+        [11, 3],
+        [6, 14],
+        [8, 1],
+        [4, 2],
+        [2, 12],
+        [0, 8],
+        [15, 4],
+        [14, 15],
+        [1, 0],
+    ];
+    match samples {
+        1 => &[[8, 8]],
+        4 => &[[6, 2], [14, 6], [2, 10], [10, 14]],
+        _ => &SIXTEEN,
+    }
+}
+
+/// First row of samples of a pixel and log2 of the distance between rows, 1/1024 pixel.
+pub const fn sample_rows(samples: u32) -> (i32, u32) {
+    match samples {
+        1 => (512, 10),
+        4 => (128, 8),
+        _ => (0, 6),
+    }
+}
+
+/// What differs between the variants of a shader.
+fn constants(samples: u32) -> String {
+    let positions: Vec<String> =
+        sample_positions(samples).iter().map(|[x, y]| format!("vec2<i32>({x}, {y})")).collect();
+    // With one sample a pixel, positions are whole pixels from its middle, else sixteenths.
+    let (grid_log2, corner) = if samples == 1 { (10, 8) } else { (6, 0) };
+    let pixels = if samples == 16 { 1 } else { 2 };
+    format!(
+        "const SAMPLES: u32 = {samples}u;\n\
+         const POSITIONS = array<vec2<i32>, {samples}>({});\n\
+         const GRID_LOG2: u32 = {grid_log2}u;\n\
+         const GRID_PER_PX: i32 = {};\n\
+         const GRID_CORNER = vec2<i32>({corner}, {corner});\n\
+         const PIXELS: u32 = {pixels}u;\n",
+        positions.join(", "),
+        1 << (10 - grid_log2),
+    )
+}
+
+#[cfg(test)]
+mod tests;

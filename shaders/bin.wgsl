@@ -1,0 +1,82 @@
+// Bin: which primitives touch which tile of a band.
+//
+// `count` counts them by tile and moves those that touch very many to a list of their own;
+// scan.wgsl lays out one list for each tile; `scatter` fills them, in any order. One
+// invocation takes primitives in turn.
+
+@group(0) @binding(1) var<storage, read> raster_target: Target;
+@group(0) @binding(2) var<storage, read_write> primitives: array<Primitive>;
+@group(0) @binding(3) var<storage, read_write> counters: array<atomic<u32>, 8>;
+@group(0) @binding(4) var<storage, read_write> tiles: array<array<atomic<u32>, 2>>;
+@group(0) @binding(5) var<storage, read_write> lists: array<u32>;
+
+// Primitives that touch more tiles than this are looked at by every tile.
+const MANY_TILES: i32 = 256;
+
+// First and last column, then row of tiles; first > last where none is touched.
+fn touched(x: vec3<i32>, y: vec3<i32>) -> vec4<i32> {
+    let first_y = i32(raster_target.first_y);
+    let low = vec2<i32>(min(min(x.x, x.y), x.z), min(min(y.x, y.y), y.z)) >> vec2<u32>(10u);
+    let high = vec2<i32>(max(max(x.x, x.y), x.z), max(max(y.x, y.y), y.z)) >> vec2<u32>(10u);
+    let end = vec2<i32>(i32(raster_target.width), i32(raster_target.band_height)) - 1;
+    let start = max(low - vec2<i32>(0, first_y), vec2<i32>(0));
+    let to = min(high - vec2<i32>(0, first_y), end);
+    if any(start > to) {
+        return vec4<i32>(1, 0, 1, 0);
+    }
+    let first = start >> vec2<u32>(TILE_LOG2);
+    let last = to >> vec2<u32>(TILE_LOG2);
+    return vec4<i32>(first.x, last.x, first.y, last.y);
+}
+
+fn primitive_count() -> u32 {
+    return min(atomicLoad(&counters[0]), arrayLength(&primitives));
+}
+
+@compute @workgroup_size(64)
+fn count(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
+    let end = primitive_count();
+    for (var i = id.x; i < end; i += 64u * groups.x) {
+        let t = touched(primitives[i].x, primitives[i].y);
+        let small = primitives[i].flags & SMALL;
+        let others = select(raster_target.tiles.x * raster_target.tiles.y, 0u, small != 0u);
+        let many = (t.y - t.x + 1) * (t.w - t.z + 1) > MANY_TILES;
+        if many {
+            let slot = atomicAdd(&counters[1], 1u);
+            if slot < LARGE_ROOM {
+                lists[slot] = i;
+                primitives[i].flags = small | LARGE;
+                continue;
+            }
+        }
+        primitives[i].flags = small;
+        for (var row = t.z; row <= t.w; row++) {
+            for (var column = t.x; column <= t.y; column++) {
+                let tile = u32(row) * raster_target.tiles.x + u32(column);
+                atomicAdd(&tiles[others + tile][0], 1u);
+            }
+        }
+    }
+}
+
+@compute @workgroup_size(64)
+fn scatter(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
+    let end = primitive_count();
+    for (var i = id.x; i < end; i += 64u * groups.x) {
+        if (primitives[i].flags & LARGE) != 0u {
+            continue;
+        }
+        let t = touched(primitives[i].x, primitives[i].y);
+        let small = (primitives[i].flags & SMALL) != 0u;
+        let others = select(raster_target.tiles.x * raster_target.tiles.y, 0u, small);
+        for (var row = t.z; row <= t.w; row++) {
+            for (var column = t.x; column <= t.y; column++) {
+                let tile = u32(row) * raster_target.tiles.x + u32(column);
+                let at = atomicAdd(&tiles[others + tile][1], 1u);
+                if at < arrayLength(&lists) {
+                    lists[at] = i;
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,99 @@
+// Shade and display: the picture of a band.
+//
+// The samples of a pixel that show the same smooth stretch of one draw share a fragment, all
+// others get one for each triangle; its weight is its share of the samples. Tone mapping comes
+// before the sum over a pixel's fragments, so that a bright edge stays smooth; the sum is made in
+// linear display light. One invocation a pixel.
+
+@group(0) @binding(1) var<uniform> raster_target: Target;
+@group(0) @binding(2) var<storage, read> primitives: array<Primitive>;
+@group(0) @binding(3) var<storage, read> surfaces: array<Surface>;
+@group(0) @binding(4) var<storage, read> vertices: array<Vertex>;
+@group(0) @binding(5) var<storage, read> samples: array<vec2<u32>>;
+@group(0) @binding(6) var<storage, read> texels: array<u32>;
+@group(0) @binding(7) var<storage, read> lights: array<Light>;
+@group(0) @binding(8) var<storage, read> shadow_map: ShadowMap;
+@group(0) @binding(9) var<storage, read_write> picture: array<u32>;
+
+// Cosine of the angle between faces, in 1/127 squared, below which an edge counts as a crease
+// that must not be shaded as one: 37 degrees.
+const CREASE: i32 = 12903;
+// Steps in depth larger than this many pixel widths separate surfaces.
+const STEP_PX: f32 = 8.0;
+
+// Direction of a triangle's plane in 1/127, away from the camera.
+fn facing(slot: u32) -> vec3<i32> {
+    let corners = primitives[slot].corners;
+    let a = vertices[corners.x].position;
+    let n = cross(vertices[corners.y].position - a, vertices[corners.z].position - a);
+    let away = select(-n, n, dot(n, a) > 0.0);
+    return vec3<i32>(away * (127.0 / sqrt(max(dot(n, n), 1e-30))));
+}
+
+// Whether two samples of one smooth draw lie on one smooth stretch of surface.
+fn connected(a: vec2<u32>, b: vec2<u32>) -> bool {
+    let za = bitcast<f32>(a.y);
+    let zb = bitcast<f32>(b.y);
+    if abs(za - zb) * max(frame.focal.x, frame.focal.y) > STEP_PX * min(za, zb) {
+        return false;
+    }
+    let fa = facing(a.x);
+    let fb = facing(b.x);
+    return fa.x * fb.x + fa.y * fb.y + fa.z * fb.z >= CREASE;
+}
+
+// Display light of a fragment.
+fn fragment(slot: u32, at: vec2<f32>) -> vec3<f32> {
+    let draw = primitives[slot].draw;
+    let point = surface_point(primitives[slot].corners, at, surfaces[draw].flags);
+    let look = look_at(draw, point);
+    return tone_map(reflected(point, look, surfaces[draw].metallic, surfaces[draw].wrap));
+}
+
+// Display light of a pixel whose samples start at `first`.
+fn pixel_color(first: u32, corner: vec2<f32>) -> vec3<f32> {
+    var color = vec3<f32>(0.0);
+    var rest = (1u << SAMPLES) - 1u;
+    for (var i = 0u; i < SAMPLES; i++) {
+        if ((rest >> i) & 1u) == 0u {
+            continue;
+        }
+        let own = samples[first + i];
+        if own.x == NOTHING {
+            color += frame.background * (1.0 / f32(SAMPLES));
+            continue;
+        }
+        let draw = primitives[own.x].draw;
+        let is_smooth = (surfaces[draw].flags & SMOOTH) != 0u;
+        var count = 0u;
+        var sum = vec2<i32>(0);
+        for (var j = i; j < SAMPLES; j++) {
+            let other = samples[first + j];
+            if ((rest >> j) & 1u) == 0u || other.x == NOTHING {
+                continue;
+            }
+            var together = other.x == own.x;
+            if !together && is_smooth && primitives[other.x].draw == draw {
+                together = connected(own, other);
+            }
+            if together {
+                rest &= ~(1u << j);
+                count += 1u;
+                sum += POSITIONS[j];
+            }
+        }
+        let at = corner + vec2<f32>(sum) * (1.0 / f32(count)) * (1.0 / 16.0);
+        color += fragment(own.x, at) * (f32(count) / f32(SAMPLES));
+    }
+    return color;
+}
+
+@compute @workgroup_size(8, 8)
+fn main(@builtin(global_invocation_id) id: vec3<u32>) {
+    if id.x >= raster_target.width || id.y >= raster_target.band_height {
+        return;
+    }
+    let pixel = id.y * raster_target.width + id.x;
+    let corner = vec2<f32>(f32(id.x), f32(id.y + raster_target.first_y));
+    picture[pixel] = encode(pixel_color(pixel * SAMPLES, corner));
+}

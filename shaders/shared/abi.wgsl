@@ -1,0 +1,232 @@
+// What the host and the stages share. Mirrored in core/src/engine/gpu/abi.rs; a test compares
+// every size and offset.
+//
+// Spaces: view space looks down -Z, metres. Picture: pixels from the top-left corner. Raster:
+// 1/1024 pixel. Screen: 1/65536 pixel. Depth is reversed, larger is nearer.
+
+// What is the same for all stages of a frame.
+struct Frame {
+    // Pixels.
+    size: vec2<u32>,
+    light_count: u32,
+    // Always 0, which no compiler knows; see double.wgsl.
+    zero: u32,
+    // Focal lengths, then the principal point, pixels.
+    focal: vec2<f32>,
+    center: vec2<f32>,
+    near_m: f32,
+    // Largest side of the sun's map, texels.
+    shadow_map_size: u32,
+    has_sun: u32,
+    has_shadow: u32,
+    // World +Y in view space.
+    up: vec3<f32>,
+    object_count: u32,
+    // Light, all of it times the exposure.
+    sky: vec3<f32>,
+    pad0: u32,
+    ground: vec3<f32>,
+    pad1: u32,
+    // Linear display light where nothing stands.
+    background: vec3<f32>,
+    pad2: u32,
+    to_sun: vec3<f32>,
+    pad3: u32,
+    sun_color: vec3<f32>,
+    pad4: u32,
+    // Right, up and towards the sun, for the fit of its map.
+    sun_axes: array<vec4<f32>, 3>,
+}
+
+// A picture that is rastered: a band of the camera's, or the sun's map.
+struct Target {
+    // x w, y w, w and depth w as affine functions of a view-space point: high parts, then low.
+    rows: array<vec4<f32>, 8>,
+    near_w: f32,
+    width: u32,
+    height: u32,
+    // Batches of triangles, and of vertices.
+    batch_count: u32,
+    // Tiles of the band; its first row of pixels.
+    tiles: vec2<u32>,
+    first_y: u32,
+    // Rows of pixels of the band.
+    band_height: u32,
+    // First row of samples and log2 of the distance between rows, raster units.
+    first_row: i32,
+    row_step_log2: u32,
+    vertex_batch_count: u32,
+    pad0: u32,
+}
+
+// Up to 256 vertices of one object.
+struct VertexBatch {
+    object: u32,
+    // Words of the mesh pool, first vertex of the batch.
+    source: u32,
+    count: u32,
+    // First placed vertex.
+    first: u32,
+    // Rows of the palette; rigid objects have one transform for points and one for normals.
+    palette: u32,
+    rigid: u32,
+    in_view: u32,
+    casts: u32,
+}
+
+// Up to 64 triangles of one draw.
+struct TriangleBatch {
+    draw: u32,
+    object: u32,
+    // Words of the mesh pool, first triangle of the batch.
+    source: u32,
+    count: u32,
+    // First placed vertex of the object.
+    vertices: u32,
+    // Place of the first triangle in draw order.
+    order: u32,
+    mirrored: u32,
+    double_sided: u32,
+}
+
+// A placed vertex, view space.
+struct Vertex {
+    position: vec3<f32>,
+    u: f32,
+    normal: vec3<f32>,
+    v: f32,
+}
+
+// A projected vertex; x is OUTSIDE where it cannot be projected.
+struct ScreenVertex {
+    x: i32,
+    y: i32,
+    depth: f32,
+    pad: u32,
+}
+
+// A triangle that may cover samples, clockwise on screen, its farthest corner first.
+struct Primitive {
+    x: vec3<i32>,
+    // Inverse of twice the area, raster units.
+    inverse_area: f32,
+    y: vec3<i32>,
+    // Place in draw order.
+    order: u32,
+    // Depth at the corners.
+    depth: vec3<f32>,
+    flags: u32,
+    // Vertices of the unclipped triangle.
+    corners: vec3<u32>,
+    draw: u32,
+}
+
+// What a set-up counts. Capacities that did not suffice are seen by the host.
+struct Counters {
+    primitives: u32,
+    // Primitives in the list of large ones.
+    large: u32,
+    // Entries of the tiles' lists, the most over all bands.
+    entries: u32,
+    // All ones minus the first object with a number that is not finite; 0 for none.
+    bad_object: u32,
+    // Triangles that are cut, or whose visible part is bounded.
+    crossing: u32,
+    pad0: u32,
+    pad1: u32,
+    pad2: u32,
+}
+
+// Where a list of a tile stands: those of small primitives come first, then those of others.
+struct Tile {
+    count: u32,
+    // Its end, once scattered.
+    end: u32,
+}
+
+// A box along the sun's axes in ordered integers; see shared/bounds.wgsl.
+struct Bounds {
+    low: array<u32, 3>,
+    high: array<u32, 3>,
+    nearest: u32,
+    // Whether the object's shadow can be seen.
+    reaches: u32,
+}
+
+// How points are found in the sun's map.
+struct SunView {
+    // Texel column, texel row and depth of a view-space point.
+    rows: array<vec4<f32>, 3>,
+    size: vec2<u32>,
+    texel_m: f32,
+    depth_per_m: f32,
+    // 0 if no shadow can be seen.
+    present: u32,
+    pad0: u32,
+    pad1: u32,
+    pad2: u32,
+}
+
+// A draw's material.
+struct Surface {
+    base_color: vec3<f32>,
+    roughness: f32,
+    uv_repeat: vec2<f32>,
+    detail_strength: f32,
+    // Sixths of a turn, negative for none.
+    hue_turn: f32,
+    metallic: f32,
+    normal_strength: f32,
+    wrap: f32,
+    flags: u32,
+    layers: array<vec4<f32>, 4>,
+    // Albedo, detail, normal and mask: first texel of each in the pool.
+    map_first: vec4<u32>,
+    // log2 of the side, and what shared/texture.wgsl says.
+    map_info: vec4<u32>,
+    object: u32,
+    pad0: u32,
+    pad1: u32,
+    pad2: u32,
+}
+
+// A point light, scaled by the exposure.
+struct Light {
+    position: vec3<f32>,
+    per_range_m2: f32,
+    color_cd: vec3<f32>,
+    per_radius_m: f32,
+}
+
+// Count and extent of an object's samples in 1/16 pixel; smallest as all ones minus.
+struct ObjectSums {
+    count: u32,
+    low: array<u32, 2>,
+    high: array<u32, 2>,
+}
+
+const OUTSIDE: i32 = -2147483648;
+// As x of a vertex whose object is left out.
+const LEFT_OUT: i32 = -2147483647;
+const NOTHING: u32 = 0xffffffffu;
+
+// Surface.flags
+const DOUBLE_SIDED: u32 = 1u;
+const MIRRORED: u32 = 2u;
+const SMOOTH: u32 = 4u;
+
+// Primitive.flags
+const SMALL: u32 = 1u;
+const LARGE: u32 = 2u;
+
+// Side of a tile in pixels.
+const TILE_LOG2: u32 = 3u;
+// Workgroups along x of a stage with one for each batch.
+const BATCHES_ACROSS: u32 = 32768u;
+// Room for primitives that every tile looks at, in front of the tiles' lists.
+const LARGE_ROOM: u32 = 4096u;
+
+// Words of the sun's map in front of its texels: the SunView.
+const HEADER: u32 = 20u;
+
+@group(0) @binding(0) var<uniform> frame: Frame;

@@ -1,0 +1,113 @@
+// Raster: depth, and which primitive, of the samples of one tile.
+//
+// Coverage by exact integer edge functions with the top-left rule; the nearest sample wins, of
+// equals the earlier drawn, so that the order of the lists does not matter. An invocation owns
+// PIXELS pixels of the tile of 64. Needs raster_target, primitives, tiles, lists and counters.
+
+const LANES: u32 = 64u / PIXELS;
+const KEPT: u32 = PIXELS * SAMPLES;
+
+var<private> best_depth: array<f32, KEPT>;
+var<private> best_order: array<u32, KEPT>;
+var<private> best_slot: array<u32, KEPT>;
+
+// A pixel of an invocation, from the tile's corner.
+fn pixel_of(lane: u32, k: u32) -> vec2<i32> {
+    let index = lane + k * LANES;
+    return vec2<i32>(i32(index & 7u), i32(index >> 3u));
+}
+
+fn keep(at: u32, depth: f32, order: u32, slot: u32) {
+    let wins = depth > best_depth[at] || (depth == best_depth[at] && order < best_order[at]);
+    if wins && depth > 0.0 {
+        best_depth[at] = depth;
+        best_order[at] = order;
+        best_slot[at] = slot;
+    }
+}
+
+fn raster_large(slot: u32, lane: u32, x: vec3<i32>, y: vec3<i32>) {
+    let a = y - y.yzx;
+    let b = x.yzx - x;
+    let bias = edge_bias(a, b);
+    // Values of edges over some 4096 pixels long are too large with fine steps; they can do
+    // without the last digits, as what is lost over a tile is a millionth of a step.
+    let steep = max(max(abs(a.x) + abs(b.x), abs(a.y) + abs(b.y)), abs(a.z) + abs(b.z));
+    let extra = select(0u, 3u, SAMPLES > 1u && steep >= (1 << 22u));
+    let shift = GRID_LOG2 + extra;
+    let e0 = edge_start(a.x, b.x, x.x, y.x, bias.x, shift);
+    let e1 = edge_start(a.y, b.y, x.y, y.y, bias.y, shift);
+    let e2 = edge_start(a.z, b.z, x.z, y.z, bias.z, shift);
+    let start = vec3<i32>(e0.grid, e1.grid, e2.grid);
+    let step_x = a >> vec3<u32>(extra);
+    let step_y = b >> vec3<u32>(extra);
+    let across = select(vec3<i32>(0), step_x * (8 * GRID_PER_PX), step_x > vec3<i32>(0));
+    let down = select(vec3<i32>(0), step_y * (8 * GRID_PER_PX), step_y > vec3<i32>(0));
+    if any(start + across + down < vec3<i32>(0)) {
+        return;
+    }
+    let z = primitives[slot].depth;
+    let order = primitives[slot].order;
+    let inverse_area = primitives[slot].inverse_area;
+    let unit = f32(1u << GRID_LOG2);
+    let slope = (vec2<f32>(f32(a.z), f32(b.z)) * (z.y - z.x)
+        + vec2<f32>(f32(a.x), f32(b.x)) * (z.z - z.x)) * (inverse_area * unit);
+    let depth = z.x + (e2.value * (z.y - z.x) + e0.value * (z.z - z.x)) * inverse_area;
+    for (var k = 0u; k < PIXELS; k++) {
+        let pixel = pixel_of(lane, k) * GRID_PER_PX;
+        for (var s = 0u; s < SAMPLES; s++) {
+            let at = pixel + (POSITIONS[s] - GRID_CORNER) * GRID_PER_PX / 16;
+            let inside = start + step_x * at.x + step_y * at.y;
+            if (inside.x | inside.y | inside.z) >= 0 {
+                keep(k * SAMPLES + s, depth + dot(slope, vec2<f32>(at)), order, slot);
+            }
+        }
+    }
+}
+
+fn raster_small(slot: u32, lane: u32, x: vec3<i32>, y: vec3<i32>) {
+    let a = y - y.yzx;
+    let b = x.yzx - x;
+    let bias = edge_bias(a, b);
+    let start = -(a * x + b * y);
+    let z = primitives[slot].depth;
+    let order = primitives[slot].order;
+    let rise = vec2<f32>(z.y - z.x, z.z - z.x) * primitives[slot].inverse_area;
+    for (var k = 0u; k < PIXELS; k++) {
+        let pixel = pixel_of(lane, k) * 1024;
+        for (var s = 0u; s < SAMPLES; s++) {
+            let at = pixel + (POSITIONS[s] - GRID_CORNER) * 64;
+            let value = start + a * at.x + b * at.y;
+            let inside = value + bias;
+            if (inside.x | inside.y | inside.z) >= 0 {
+                let depth = z.x + (f32(value.z) * rise.x + f32(value.x) * rise.y);
+                keep(k * SAMPLES + s, depth, order, slot);
+            }
+        }
+    }
+}
+
+// Rasters everything that touches a tile: small primitives, then those of its list of others and
+// those that all tiles look at.
+fn raster_tile(tile: vec2<u32>, lane: u32) {
+    for (var i = 0u; i < KEPT; i++) {
+        best_depth[i] = 0.0;
+        best_order[i] = NOTHING;
+        best_slot[i] = NOTHING;
+    }
+    let corner = vec2<i32>(tile << vec2<u32>(TILE_LOG2)) + vec2<i32>(0, i32(raster_target.first_y));
+    // The first sample of a grid that goes on over the tile, raster units.
+    let origin = (corner << vec2<u32>(10u)) + GRID_CORNER * 64;
+    let index = tile.y * raster_target.tiles.x + tile.x;
+    let small = tiles[index];
+    for (var i = small.end - small.count; i < small.end; i++) {
+        let slot = lists[i];
+        raster_small(slot, lane, primitives[slot].x - origin.x, primitives[slot].y - origin.y);
+    }
+    let large = min(counters.large, LARGE_ROOM);
+    let others = tiles[index + raster_target.tiles.x * raster_target.tiles.y];
+    for (var i = 0u; i < large + others.count; i++) {
+        let slot = lists[select(others.end - others.count + i - large, i, i < large)];
+        raster_large(slot, lane, primitives[slot].x - origin.x, primitives[slot].y - origin.y);
+    }
+}
