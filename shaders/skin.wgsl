@@ -12,8 +12,8 @@
 @group(0) @binding(6) var<storage, read_write> screen: array<ScreenVertex>;
 @group(0) @binding(7) var<storage, read_write> bad_object: array<atomic<u32>, 8>;
 
-// Words of a vertex in the pool: position, normal, u, v, four joints, four weights.
-const VERTEX_WORDS: u32 = 10u;
+// Words of a vertex in the pool: position, packed normal, u, v, four joints, four weights.
+const VERTEX_WORDS: u32 = 8u;
 
 struct Rows {
     x: vec4<f32>,
@@ -54,6 +54,15 @@ fn vector_at(word: u32) -> vec3<f32> {
     );
 }
 
+// A vector of a packed normal's direction: the octahedron unfolded onto a square.
+fn direction(packed: u32) -> vec3<f32> {
+    let units = vec2<i32>(bitcast<i32>(packed << 16u) >> 16u, bitcast<i32>(packed) >> 16u);
+    let flat = vec2<f32>(units) * (1.0 / 32767.0);
+    let z = 1.0 - abs(flat.x) - abs(flat.y);
+    let fold = max(-z, 0.0);
+    return vec3<f32>(select(flat - fold, flat + fold, flat < vec2<f32>(0.0)), z);
+}
+
 fn is_finite(v: vec3<f32>) -> bool {
     let exponents = bitcast<vec3<u32>>(v) & vec3<u32>(0x7f800000u);
     return all(exponents != vec3<u32>(0x7f800000u));
@@ -74,16 +83,16 @@ fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index
             points = rows_at(batch.palette);
             normals = rows_at(batch.palette + 3u);
         } else {
-            points = blend(batch.palette, meshes[word + 8u], meshes[word + 9u]);
+            points = blend(batch.palette, meshes[word + 6u], meshes[word + 7u]);
             normals = points;
         }
         let position = transform(points, vector_at(word), 1.0);
-        let bent = transform(normals, vector_at(word + 3u), 0.0);
+        let bent = transform(normals, direction(meshes[word + 3u]), 0.0);
         let normal = bent * (1.0 / sqrt(max(dot(bent, bent), 1e-30)));
         if !(is_finite(position) && is_finite(bent)) {
             atomicMax(&bad_object[3], NOTHING - batch.object);
         }
-        let uv = vec2<f32>(bitcast<f32>(meshes[word + 6u]), bitcast<f32>(meshes[word + 7u]));
+        let uv = vec2<f32>(bitcast<f32>(meshes[word + 4u]), bitcast<f32>(meshes[word + 5u]));
         vertices[batch.first + i] = Vertex(position, uv.x, normal, uv.y);
         screen[batch.first + i] = project(position);
     }

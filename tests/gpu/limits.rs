@@ -141,20 +141,9 @@ fn numbers_that_are_not_finite_are_refused_by_name() {
     let mut refused = |list: &DrawList| {
         engine.render(list, &plan(&[Output::Rgb]), &mut StageTimes::default()).unwrap_err()
     };
-    let change = |change: &dyn Fn(&mut Mesh)| {
-        let mut list = list.clone();
-        change(Arc::make_mut(&mut list.objects.last_mut().unwrap().mesh));
-        list
-    };
-    for list in
-        [change(&|m| m.positions[2][0] = f32::INFINITY), change(&|m| m.normals[1][0] = f32::NAN)]
-    {
-        let error = refused(&list);
-        assert!(
-            matches!(error, EngineError::NotFinite { object, .. } if object == square),
-            "{error}"
-        );
-    }
+    Arc::make_mut(&mut list.objects.last_mut().unwrap().mesh).positions[2][0] = f32::INFINITY;
+    let error = refused(&list);
+    assert!(matches!(error, EngineError::NotFinite { object, .. } if object == square), "{error}");
 }
 
 /// Surfaces that lie where numbers run out must not panic or spoil other pixels.

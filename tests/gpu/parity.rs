@@ -4,7 +4,7 @@ use figurant_core::document::presets;
 use figurant_core::draw::DrawList;
 use figurant_core::draw::abi::{PointLight, Sun};
 use figurant_core::label;
-use figurant_core::library::texture::{Encoding, Texture};
+use figurant_core::library::texture::{Encoding, Texture, color_from_srgb8};
 use figurant_core::plan::{Output, Outputs};
 use figurant_tests::drawlists::mixed;
 use figurant_tests::meshes::Dice;
@@ -31,10 +31,12 @@ fn lit(seed: u64, samples: u32) -> DrawList {
         radius_m: 0.05,
     }];
     let checks = (0..64 * 64).map(|i: u32| {
-        if (i % 64 / 8 + i / 512).is_multiple_of(2) { 0x00e0_d0c0 } else { 0x0070_8090 }
+        if (i % 64 / 8 + i / 512).is_multiple_of(2) { [192, 208, 224] } else { [144, 128, 112] }
     });
-    let texture = Texture::from_level0(6, Encoding::Srgb, checks.collect());
-    let plain = Texture { encoding: Encoding::Linear, ..texture.clone() };
+    let colors = checks.clone().map(color_from_srgb8).collect();
+    let texture = Texture::from_level0(6, Encoding::Color, colors);
+    let numbers = checks.map(|[r, g, b]| u32::from_le_bytes([r, g, b, 0])).collect();
+    let plain = Texture::from_level0(6, Encoding::Linear, numbers);
     list.textures = vec![Arc::new(texture), Arc::new(plain)];
     for (i, m) in list.materials.iter_mut().enumerate() {
         m.albedo_map = (i % 2 == 0).then_some(0);

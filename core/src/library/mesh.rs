@@ -99,6 +99,13 @@ impl Normal {
         }))
     }
 
+    /// The two numbers of the square, 16 bits each in units of 1/32,767, the first in the low half.
+    #[must_use]
+    pub const fn bits(self) -> u32 {
+        let [x, y] = self.0;
+        x as u16 as u32 | (y as u16 as u32) << 16
+    }
+
     /// A vector of this direction, 0.57 to 1 long: what turns it scales it as well.
     #[must_use]
     #[inline(always)]

@@ -200,7 +200,7 @@ pub struct ObjectSums {
 }
 
 /// Words of a vertex in the mesh pool.
-pub const VERTEX_WORDS: u32 = 10;
+pub const VERTEX_WORDS: u32 = 8;
 /// Vertices of a [`VertexBatch`].
 pub const VERTEX_BATCH: u32 = 256;
 /// Triangles of a [`TriangleBatch`].

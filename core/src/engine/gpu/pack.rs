@@ -58,12 +58,13 @@ pub const fn mesh_words(mesh: &Mesh) -> u64 {
 pub fn mesh_content(mesh: &Mesh) -> Vec<u32> {
     let mut words = Vec::with_capacity(mesh_words(mesh) as usize);
     for i in 0..mesh.positions.len() {
-        let numbers = mesh.positions[i].iter().chain(&mesh.normals[i]).chain(&mesh.uvs[i]);
-        words.extend(numbers.map(|v| v.to_bits()));
+        words.extend(mesh.positions[i].map(f32::to_bits));
+        words.push(mesh.normals[i].bits());
+        words.extend(mesh.uvs[i].map(f32::to_bits));
         let skin = mesh.skin.get(i).copied().unwrap_or_default();
         words.extend([skin.joints, skin.weights].map(u32::from_le_bytes));
     }
-    words.extend(mesh.triangles.as_flattened());
+    words.extend(mesh.triangles.iter().flat_map(|t| t.get()));
     words
 }
 
@@ -253,7 +254,7 @@ fn surface(material: &Material, list: &DrawList, textures: &[u32], object: u32) 
         material.mask,
     ];
     let info = |texture: &Texture| {
-        let color = if texture.encoding == Encoding::Srgb { MAP_COLOR } else { 0 };
+        let color = if texture.encoding == Encoding::Color { MAP_COLOR } else { 0 };
         texture.log2_size | color | MAP_PRESENT
     };
     Surface {

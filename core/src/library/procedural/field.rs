@@ -178,8 +178,8 @@ impl Octave {
         let above = self.amplitude - below;
         let (above_y, below_y) = (above * v, below * (v - 1.0));
         let (upper, lower) = (&self.upper, &self.lower);
-        for x in 0..SIDE {
-            out[x] += (above * upper.x[x] + above_y * upper.y[x])
+        for (x, out) in out.iter_mut().enumerate() {
+            *out += (above * upper.x[x] + above_y * upper.y[x])
                 + (below * lower.x[x] + below_y * lower.y[x]);
         }
     }
