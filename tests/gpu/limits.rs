@@ -3,7 +3,6 @@
 use figurant_core::draw::DrawList;
 use figurant_core::engine::gpu::{GpuEngine, GpuError, GpuOptions};
 use figurant_core::engine::{Engine, EngineError};
-use figurant_core::library::mesh::Mesh;
 use figurant_core::plan::{Output, StageTimes};
 use figurant_tests::crowd::crowd;
 use figurant_tests::drawlists::{add, empty, mixed, view};
