@@ -8,7 +8,7 @@ use std::fs;
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 
-use figurant::road::{Job, LoadError, Road, Simd, Wishes};
+use figurant::road::{Adapter, Job, LoadError, Road, Simd, Wishes};
 use figurant::{Console, Exit, Stop};
 use figurant_core::document::cast::Member;
 use figurant_core::export::{DatasetInfo, PictureFormat};
@@ -199,8 +199,9 @@ impl Road for Atelier {
         format!("brush ({simd:?})")
     }
 
-    fn adapters(&self) -> Option<Vec<(String, String)>> {
-        Some(vec![("easel".to_owned(), "easel (wood)".to_owned())])
+    fn adapters(&self) -> Option<Vec<Adapter>> {
+        let (name, line) = ("easel".to_owned(), "easel (wood)".to_owned());
+        Some(vec![Adapter { name, line, hardware: true }])
     }
 
     fn built_in_assets(&self) -> Result<Vec<String>, String> {

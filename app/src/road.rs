@@ -43,6 +43,17 @@ pub struct EngineWish {
     pub adapter: Option<String>,
 }
 
+/// A graphics adapter, for people to read.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Adapter {
+    /// How to name it.
+    pub name: String,
+    /// A line on it.
+    pub line: String,
+    /// Whether it is a graphics processor and not a program that pretends to be one.
+    pub hardware: bool,
+}
+
 /// What the command line changes about a config.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Wishes {
@@ -133,9 +144,9 @@ pub trait Road: Sync {
     /// The engine and the code path that a maker would use here, for people to read.
     fn engine(&self, simd: Simd) -> String;
 
-    /// The graphics adapters of this machine: how to name each, and a line on it. Nothing if the
-    /// program was built without the graphics engine.
-    fn adapters(&self) -> Option<Vec<(String, String)>>;
+    /// The graphics adapters of this machine. Nothing if the program was built without the graphics
+    /// engine.
+    fn adapters(&self) -> Option<Vec<Adapter>>;
 
     /// Loads every asset that ships with the program; a line on each kind.
     ///

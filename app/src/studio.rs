@@ -19,7 +19,7 @@ use figurant_core::library::textures::TextureGroup;
 use figurant_core::library::{Library, NO_LICENCE};
 use figurant_core::sampling::Sampler;
 
-use crate::road::{EngineKind, EngineWish, Job, LoadError, Road, Simd, Wishes};
+use crate::road::{Adapter, EngineKind, EngineWish, Job, LoadError, Road, Simd, Wishes};
 
 /// The road that the program itself walks.
 #[derive(Clone, Copy, Debug, Default)]
@@ -89,10 +89,13 @@ impl Road for Native {
         format!("cpu, {}", engine.simd_name())
     }
 
-    fn adapters(&self) -> Option<Vec<(String, String)>> {
+    fn adapters(&self) -> Option<Vec<Adapter>> {
         #[cfg(feature = "gpu")]
         return Some(
-            gpu::adapters().into_iter().map(|a| (a.name.clone(), a.to_string())).collect(),
+            gpu::adapters()
+                .into_iter()
+                .map(|a| Adapter { line: a.to_string(), hardware: a.hardware, name: a.name })
+                .collect(),
         );
         #[cfg(not(feature = "gpu"))]
         None

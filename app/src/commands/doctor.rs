@@ -42,7 +42,7 @@ pub fn run<R: Road>(
             page.bad("assets", format!("{text}; the program is damaged, install it again"))
         }
     }
-    match test_frame(road, args, EngineWish::default()) {
+    match test_frame(road, args, EngineWish::default(), None) {
         Ok(text) => page.good("test frame", text),
         Err(text) => page.bad("test frame", text),
     }
@@ -66,10 +66,11 @@ fn graphics<R: Road>(road: &R, args: &DoctorArgs, page: &mut Page) {
                 .to_owned(),
         );
     }
-    for (name, line) in adapters {
-        page.good("graphics", line);
-        let wish = EngineWish { kind: EngineKind::Gpu, adapter: Some(name) };
-        match test_frame(road, args, wish) {
+    for adapter in adapters {
+        page.good("graphics", adapter.line);
+        let wish = EngineWish { kind: EngineKind::Gpu, adapter: Some(adapter.name) };
+        let size = (!adapter.hardware).then_some(SOFTWARE_SIZE);
+        match test_frame(road, args, wish, size) {
             Ok(text) => page.good("test frame", text),
             Err(text) => page.warn("test frame", text),
         }
@@ -154,9 +155,17 @@ fn try_disk() -> Result<String, String> {
     }
 }
 
+/// Size of the test frame for adapters of software: at the config's own they take many seconds.
+const SOFTWARE_SIZE: [u32; 2] = [128, 128];
+
 /// Renders a frame of a config that ships with the program, twice: the first also fills caches.
-fn test_frame<R: Road>(road: &R, args: &DoctorArgs, engine: EngineWish) -> Result<String, String> {
-    let wishes = Wishes { simd: args.simd, engine, ..Wishes::default() };
+fn test_frame<R: Road>(
+    road: &R,
+    args: &DoctorArgs,
+    engine: EngineWish,
+    size: Option<[u32; 2]>,
+) -> Result<String, String> {
+    let wishes = Wishes { simd: args.simd, engine, size, ..Wishes::default() };
     let job = road.starter(&wishes).map_err(|e| e.to_string())?;
     let start = Instant::now();
     let mut maker = road.maker(&job, processors()).map_err(|e| e.to_string())?;

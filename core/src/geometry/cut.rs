@@ -157,7 +157,7 @@ impl Builder {
     /// Adds the part of a surface where `field` (by vertex) is not negative.
     pub fn add_cut(&mut self, s: &Surface<'_>, field: &[f32], rim: Option<Rim>) -> Range<u32> {
         let first = self.start(s.render.len());
-        let mut cuts = Lookup::<u32>::new();
+        let mut cuts = Lookup::<u32>::default();
         let mut hems = Vec::new();
         for t in s.triangles.chunks_exact(3) {
             let r = [t[0], t[1], t[2]];
@@ -209,7 +209,7 @@ impl Builder {
         b: (u16, f32),
     ) -> u32 {
         let ((a, fa), (b, fb)) = if a.0 < b.0 { (a, b) } else { (b, a) };
-        if let Some(known) = cuts.get(edge(a, b)) {
+        if let Some(&known) = cuts.get(&edge(a, b)) {
             return known;
         }
         let t = fa / (fa - fb);
@@ -222,7 +222,7 @@ impl Builder {
             uv,
             mix_skin(s.skin[i], s.skin[j], t),
         );
-        cuts.set(edge(a, b), new);
+        cuts.insert(edge(a, b), new);
         new
     }
 
@@ -232,29 +232,29 @@ impl Builder {
         let normal = |m: &Mesh, v: u32| Vec3::from_array(m.normals[v as usize].unit());
         // Directions out of the cloth, summed over the edges that meet in a point of the hem (by
         // the shell's vertices, so that texture seams do not part them).
-        let mut out = Lookup::<Vec3>::new();
+        let mut out = Lookup::<Vec3>::default();
         for &[(p, kp), (q, kq)] in hems {
             let along = at(&self.mesh, q) - at(&self.mesh, p);
             let d = along.cross(normal(&self.mesh, p) + normal(&self.mesh, q));
             for key in [kp, kq] {
-                out.set(key, out.get(key).unwrap_or(Vec3::ZERO) + d);
+                *out.entry(key).or_default() += d;
             }
         }
-        let mut rings = Lookup::<[u32; 2]>::new();
+        let mut rings = Lookup::<[u32; 2]>::default();
         for &[(p, kp), (q, kq)] in hems {
             let [a, b] = [(p, kp), (q, kq)].map(|(v, key)| {
-                if let Some(known) = rings.get(v) {
+                if let Some(&known) = rings.get(&v) {
                     return known;
                 }
                 let (x, n) = (at(&self.mesh, v), normal(&self.mesh, v));
-                let d = out.get(key).unwrap_or(n).normalize_or(n);
+                let d = out.get(&key).copied().unwrap_or(n).normalize_or(n);
                 let (uv, s) = (self.mesh.uvs[v as usize], self.mesh.skin[v as usize]);
                 let t = rim.thickness_m;
                 let middle =
                     if rim.round { self.push(x + (d - n) * (0.5 * t), d, uv, s) } else { v };
                 let inner = if rim.round { -n } else { d };
                 let ring = [middle, self.push(x - n * t, inner, uv, s)];
-                rings.set(v, ring);
+                rings.insert(v, ring);
                 ring
             });
             if rim.round {

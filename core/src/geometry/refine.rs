@@ -72,7 +72,7 @@ impl Refined {
     /// vertices of the old surface.
     pub fn refine(&mut self, between: impl Fn(usize, usize) -> f32) {
         let (vertices, touched) = self.split_crossed(between);
-        let mut corners = Lookup::<u16>::new();
+        let mut corners = Lookup::<u16>::default();
         let before = std::mem::take(&mut self.triangles);
         self.triangles.reserve(before.len() + 1024);
         for t in before.chunks_exact(3) {
@@ -85,13 +85,10 @@ impl Refined {
             }
             let middle: [Option<u16>; 3] = std::array::from_fn(|i| {
                 let j = (i + 1) % 3;
-                let vertex = vertices.get(edge(v[i], v[j]))?;
+                let vertex = *vertices.get(&edge(v[i], v[j]))?;
                 let key = edge(r[i], r[j]);
-                Some(corners.get(key).unwrap_or_else(|| {
-                    let new = self.corner(vertex, r[i].min(r[j]), r[i].max(r[j]));
-                    corners.set(key, new);
-                    new
-                }))
+                let new = || self.corner(vertex, r[i].min(r[j]), r[i].max(r[j]));
+                Some(*corners.entry(key).or_insert_with(new))
             });
             self.divide(r, middle);
         }
@@ -100,7 +97,7 @@ impl Refined {
     /// New vertices in the middle of all edges of crossed triangles, by edge; and which old
     /// vertices have such an edge.
     fn split_crossed(&mut self, between: impl Fn(usize, usize) -> f32) -> (Lookup<u16>, Vec<bool>) {
-        let mut vertices = Lookup::new();
+        let mut vertices = Lookup::default();
         let mut touched = vec![false; self.positions.len()];
         for i in 0..self.triangles.len() / 3 {
             let t = [0, 1, 2].map(|k| self.triangles[3 * i + k]);
@@ -111,9 +108,8 @@ impl Refined {
             }
             for i in 0..3 {
                 let (a, b) = (v[i], v[(i + 1) % 3]);
-                if vertices.get(edge(a, b)).is_none() {
-                    vertices.set(edge(a, b), self.split((a.min(b), a.max(b)), &between));
-                }
+                let halve = || self.split((a.min(b), a.max(b)), &between);
+                vertices.entry(edge(a, b)).or_insert_with(halve);
                 touched[usize::from(a)] = true;
             }
         }

@@ -4,38 +4,14 @@
 //! samples of a pixel are neighbours, and so are the pixels of a block. A *pixel slot* numbers the
 //! pixels of a tile in that order.
 
+use crate::engine::pattern;
+
+pub(super) use crate::engine::pattern::RASTER_BITS;
+
 /// Side of a picture tile in pixels.
 pub(super) const TILE: usize = 32;
 /// Samples of a block.
 pub(super) const BLOCK: usize = 16;
-/// Binary digits of a pixel in the raster's fixed-point coordinates.
-pub(super) const RASTER_BITS: u32 = 10;
-
-/// Position of the one sample in 1/16 pixel: the centre.
-const ONE: [[i32; 2]; 16] = [[8, 8]; 16];
-/// A rotated grid.
-const FOUR: [[i32; 2]; 4] = [[6, 2], [14, 6], [2, 10], [10, 14]];
-/// Sixteen rooks: every row and every column of the 16x16 grid holds one sample. The offsets are
-/// those of Direct3D's standard pattern.
-const SIXTEEN: [[i32; 2]; 16] = [
-    [9, 9],
-    [7, 5],
-    [5, 10],
-    [12, 7],
-    [3, 6],
-    [10, 13],
-    [13, 11],
-    [11, 3],
-    [6, 14],
-    [8, 1],
-    [4, 2],
-    [2, 12],
-    [0, 8],
-    [15, 4],
-    [14, 15],
-    [1, 0],
-];
-
 /// How `S` samples a pixel are laid out.
 pub(super) struct Layout<const S: usize>;
 
@@ -57,30 +33,20 @@ impl<const S: usize> Layout<S> {
     /// Grid steps in a pixel.
     pub(super) const GRID_PER_PX: i32 = 1 << (RASTER_BITS - Self::GRID_LOG2);
     /// Raster coordinate of the first row (and column) of samples in a pixel.
-    pub(super) const FIRST_ROW: i32 = match S {
-        1 => 512,
-        4 => 2 << (RASTER_BITS - 4),
-        _ => 0,
-    };
+    pub(super) const FIRST_ROW: i32 = pattern::rows(S as u32).0;
     /// log2 of the distance between rows (and columns) of samples, in raster coordinates.
-    pub(super) const ROW_STEP_LOG2: u32 = match S {
-        1 => RASTER_BITS,
-        4 => RASTER_BITS - 2,
-        _ => RASTER_BITS - 4,
-    };
+    pub(super) const ROW_STEP_LOG2: u32 = pattern::rows(S as u32).1;
     /// Position of each sample of a pixel in 1/16 pixel.
-    pub(super) const POSITIONS: [[i32; 2]; 16] = match S {
-        1 => ONE,
-        4 => {
-            let mut p = [[0; 2]; 16];
-            let mut i = 0;
-            while i < 16 {
-                p[i] = FOUR[i % 4];
-                i += 1;
-            }
-            p
+    /// Repeated up to sixteen.
+    pub(super) const POSITIONS: [[i32; 2]; 16] = {
+        let pattern = pattern::positions(S as u32);
+        let mut p = [[0; 2]; 16];
+        let mut i = 0;
+        while i < 16 {
+            p[i] = pattern[i % S];
+            i += 1;
         }
-        _ => SIXTEEN,
+        p
     };
     /// Smallest x and y, largest x and y of [`Self::POSITIONS`].
     pub(super) const EXTENT: [[i32; 2]; 2] = match S {
@@ -157,17 +123,5 @@ mod tests {
         slots_and_positions_agree::<1>();
         slots_and_positions_agree::<4>();
         slots_and_positions_agree::<16>();
-    }
-
-    #[test]
-    fn no_two_of_the_samples_share_a_row_or_a_column() {
-        for pattern in [&FOUR[..], &SIXTEEN[..]] {
-            for axis in 0..2 {
-                let mut values: Vec<i32> = pattern.iter().map(|p| p[axis]).collect();
-                values.sort_unstable();
-                values.dedup();
-                assert_eq!(values.len(), pattern.len());
-            }
-        }
     }
 }

@@ -99,21 +99,15 @@ impl Engine for GpuEngine {
     ) -> Result<Frame, EngineError> {
         times.measure("check", || input::check(list))?;
         match self.state.render(list, plan, times) {
-            Err(lost @ EngineError::DeviceLost { .. }) => {
-                self.reopen(lost)?;
+            // An error may come with the loss of the device, which is told a moment later.
+            Err(error)
+                if matches!(error, EngineError::DeviceLost { .. })
+                    || self.state.device.lost().is_some() =>
+            {
+                self.reopen(error)?;
                 self.state.render(list, plan, times)
             }
-            Err(other) => {
-                // An error may come with the loss of the device, which is told a moment later.
-                match self.state.device.lost() {
-                    Some(_) => {
-                        self.reopen(other)?;
-                        self.state.render(list, plan, times)
-                    }
-                    None => Err(other),
-                }
-            }
-            good => good,
+            result => result,
         }
     }
 }

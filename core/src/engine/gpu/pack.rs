@@ -4,9 +4,9 @@ use super::abi::{
     self, DOUBLE_SIDED, Frame, Light, MAP_COLOR, MAP_PRESENT, MIRRORED, SMOOTH, Surface,
     TRIANGLE_BATCH, Target, TriangleBatch, VERTEX_BATCH, VERTEX_WORDS, VertexBatch,
 };
-use super::stage::sample_rows;
 use crate::draw::DrawList;
 use crate::draw::abi::{Material, View};
+use crate::engine::pattern;
 use crate::library::mesh::Mesh;
 use crate::library::texture::{Encoding, Texture};
 
@@ -174,7 +174,7 @@ impl Packed {
 /// A band of the camera's picture: so many rows of pixels from one on.
 pub fn picture_target(list: &DrawList, packed: &Packed, first_y: u32, rows: u32) -> Target {
     let View { width, height, fx, fy, cx, cy, near_m, .. } = list.view;
-    let (first_row, row_step_log2) = sample_rows(list.samples);
+    let (first_row, row_step_log2) = pattern::rows(list.samples);
     let mut target = Target {
         near_w: near_m,
         width,
@@ -199,7 +199,7 @@ pub fn picture_target(list: &DrawList, packed: &Packed, first_y: u32, rows: u32)
 
 /// The sun's map before it is fitted.
 pub fn sun_target(packed: &Packed) -> Target {
-    let (first_row, row_step_log2) = sample_rows(1);
+    let (first_row, row_step_log2) = pattern::rows(1);
     Target {
         near_w: 0.5,
         batch_count: packed.sun_batches.len() as u32,

@@ -76,6 +76,7 @@ pub enum Stage {
     Shade,
 }
 
+use crate::engine::pattern;
 use Access::{Read, Uniform, Write};
 use Resource as R;
 
@@ -332,47 +333,10 @@ fn text_of((name, text): File) -> String {
     text.to_owned()
 }
 
-/// Positions of the samples of a pixel in 1/16 pixel: the centre, a rotated grid, or sixteen rooks
-/// with the offsets of Direct3D's standard pattern.
-pub fn sample_positions(samples: u32) -> &'static [[i32; 2]] {
-    const SIXTEEN: [[i32; 2]; 16] = [
-        [9, 9],
-        [7, 5],
-        [5, 10],
-        [12, 7],
-        [3, 6],
-        [10, 13],
-        [13, 11],
-        [11, 3],
-        [6, 14],
-        [8, 1],
-        [4, 2],
-        [2, 12],
-        [0, 8],
-        [15, 4],
-        [14, 15],
-        [1, 0],
-    ];
-    match samples {
-        1 => &[[8, 8]],
-        4 => &[[6, 2], [14, 6], [2, 10], [10, 14]],
-        _ => &SIXTEEN,
-    }
-}
-
-/// First row of samples of a pixel and log2 of the distance between rows, 1/1024 pixel.
-pub const fn sample_rows(samples: u32) -> (i32, u32) {
-    match samples {
-        1 => (512, 10),
-        4 => (128, 8),
-        _ => (0, 6),
-    }
-}
-
 /// What differs between the variants of a shader.
 fn constants(samples: u32) -> String {
     let positions: Vec<String> =
-        sample_positions(samples).iter().map(|[x, y]| format!("vec2<i32>({x}, {y})")).collect();
+        pattern::positions(samples).iter().map(|[x, y]| format!("vec2<i32>({x}, {y})")).collect();
     // With one sample a pixel, positions are whole pixels from its middle, else sixteenths.
     let (grid_log2, corner) = if samples == 1 { (10, 8) } else { (6, 0) };
     let pixels = if samples == 16 { 1 } else { 2 };
