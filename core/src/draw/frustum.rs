@@ -1,10 +1,25 @@
-//! What the camera may see, and whose shadow it may see: conservative tests on spheres.
+//! What the camera may see, and whose shadow it may see: conservative tests on hulls of spheres.
 //!
 //! A yes may be wrong, a no never is.
 
 use glam::DVec3;
 
 use crate::scene::Camera;
+
+/// A ball of view space.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sphere {
+    /// View space, metres.
+    pub center: DVec3,
+    /// Metres.
+    pub radius_m: f64,
+}
+
+/// How far the hull of some spheres reaches along a unit direction.
+#[must_use]
+pub fn reach_along(direction: DVec3, hull: &[Sphere]) -> f64 {
+    hull.iter().map(|s| direction.dot(s.center) + s.radius_m).fold(f64::NEG_INFINITY, f64::max)
+}
 
 /// The five planes of a camera's view, in view space; there is no far plane.
 #[derive(Clone, Copy, Debug)]
@@ -31,18 +46,18 @@ impl Frustum {
         }
     }
 
-    /// Whether a sphere may reach into the view.
+    /// Whether the hull of some spheres may reach into the view.
     #[must_use]
-    pub fn sees(&self, center: DVec3, radius: f64) -> bool {
-        self.planes.iter().all(|(n, d)| n.dot(center) + d >= -radius)
+    pub fn sees(&self, hull: &[Sphere]) -> bool {
+        self.planes.iter().all(|(n, d)| reach_along(*n, hull) + d >= 0.0)
     }
 
-    /// Whether the shadow of a sphere may: the sphere swept away from the sun without end.
+    /// Whether the shadow of the hull may: the hull swept away from the sun without end.
     #[must_use]
-    pub fn sees_shadow(&self, center: DVec3, radius: f64, direction_to_sun: DVec3) -> bool {
+    pub fn sees_shadow(&self, hull: &[Sphere], direction_to_sun: DVec3) -> bool {
         self.planes
             .iter()
-            .all(|(n, d)| n.dot(center) + d >= -radius || n.dot(direction_to_sun) < 0.0)
+            .all(|(n, d)| reach_along(*n, hull) + d >= 0.0 || n.dot(direction_to_sun) < 0.0)
     }
 }
 
@@ -63,24 +78,37 @@ mod tests {
         })
     }
 
+    fn sphere(x: f64, y: f64, z: f64, radius_m: f64) -> Sphere {
+        Sphere { center: DVec3::new(x, y, z), radius_m }
+    }
+
     #[test]
     fn spheres_are_seen_where_they_reach_the_view() {
         let f = frustum();
-        assert!(f.sees(DVec3::new(0.0, 0.0, -5.0), 0.1));
-        assert!(f.sees(DVec3::new(6.0, 0.0, -5.0), 1.0));
-        assert!(!f.sees(DVec3::new(8.0, 0.0, -5.0), 1.0));
-        assert!(!f.sees(DVec3::new(0.0, 0.0, 1.0), 0.5));
-        assert!(f.sees(DVec3::ZERO, 0.5));
+        assert!(f.sees(&[sphere(0.0, 0.0, -5.0, 0.1)]));
+        assert!(f.sees(&[sphere(6.0, 0.0, -5.0, 1.0)]));
+        assert!(!f.sees(&[sphere(8.0, 0.0, -5.0, 1.0)]));
+        assert!(!f.sees(&[sphere(0.0, 0.0, 1.0, 0.5)]));
+        assert!(f.sees(&[sphere(0.0, 0.0, 0.0, 0.5)]));
+    }
+
+    #[test]
+    fn a_hull_is_seen_where_no_plane_parts_all_of_it_from_the_view() {
+        let f = frustum();
+        let right = sphere(8.0, 0.0, -5.0, 1.0);
+        assert!(f.sees(&[right, sphere(-8.0, 0.0, -5.0, 1.0)]), "the view lies between them");
+        assert!(!f.sees(&[right, sphere(9.0, 3.0, -5.0, 1.0)]));
+        assert!(!f.sees(&[]));
     }
 
     #[test]
     fn a_shadow_is_seen_when_it_falls_into_the_view() {
         let f = frustum();
-        let above = DVec3::new(0.0, 20.0, -5.0);
-        assert!(!f.sees(above, 1.0));
-        assert!(f.sees_shadow(above, 1.0, DVec3::Y));
-        assert!(!f.sees_shadow(above, 1.0, DVec3::NEG_Y));
+        let above = [sphere(0.0, 20.0, -5.0, 1.0)];
+        assert!(!f.sees(&above));
+        assert!(f.sees_shadow(&above, DVec3::Y));
+        assert!(!f.sees_shadow(&above, DVec3::NEG_Y));
         // Behind the camera, with the sun at its back, the shadow falls forward.
-        assert!(f.sees_shadow(DVec3::new(0.0, 0.0, 4.0), 1.0, DVec3::Z));
+        assert!(f.sees_shadow(&[sphere(0.0, 0.0, 4.0, 1.0)], DVec3::Z));
     }
 }

@@ -35,7 +35,7 @@ use crate::library::figure::FigureError;
 use crate::library::pose::PoseError;
 use crate::library::textures::TextureError;
 use crate::scene::{Camera, Scene};
-use frustum::Frustum;
+use frustum::{Frustum, Sphere, reach_along};
 
 /// A draw list, and what in it belongs to whom.
 #[derive(Clone, Debug, Default)]
@@ -156,21 +156,19 @@ impl<'a> Drawing<'a> {
         }
     }
 
-    /// Pixels that a metre spans at most, at the nearest point of a sphere.
-    fn px_per_m(&self, center_in_view: DVec3, radius_m: f64) -> f64 {
-        // The distance along the axis decides; off the axis it is more than the sphere's near side
-        // suggests, and inside the sphere the near plane bounds it.
-        let nearest_m = (-center_in_view.z - radius_m).max(self.scene.camera.near_m);
+    /// Pixels that a metre spans at most, at the nearest point of a hull of spheres.
+    fn px_per_m(&self, hull: &[Sphere]) -> f64 {
+        // The distance along the axis decides; off the axis it is more than the near side suggests,
+        // and round the camera the near plane bounds it.
+        let nearest_m = (-reach_along(DVec3::Z, hull)).max(self.scene.camera.near_m);
         self.scene.camera.focal_px() / nearest_m
     }
 
-    /// Whether a sphere may be seen, and whether its shadow may be.
-    fn relevance(&self, center_in_view: DVec3, radius_m: f64) -> Relevance {
+    /// Whether what lies in a hull of spheres may be seen, and whether its shadow may be.
+    fn relevance(&self, hull: &[Sphere]) -> Relevance {
         Relevance {
-            in_view: self.frustum.sees(center_in_view, radius_m),
-            casts_shadow: self
-                .shadow_direction
-                .is_some_and(|d| self.frustum.sees_shadow(center_in_view, radius_m, d)),
+            in_view: self.frustum.sees(hull),
+            casts_shadow: self.shadow_direction.is_some_and(|d| self.frustum.sees_shadow(hull, d)),
         }
     }
 }

@@ -2,13 +2,11 @@
 
 use glam::{DAffine3, DVec3};
 
+use super::frustum::Sphere;
 use super::{DrawError, Drawing, Relevance, abi, rows};
 use crate::base::math::affine;
 use crate::geometry::shape::{Detail, shape_mesh};
 use crate::scene::{Object, Placement, Role};
-
-/// From the middle of the unit cube, which holds every shape, to its corner.
-const CIRCUMRADIUS: f64 = 0.866_025_403_784_438_7;
 
 /// Adds the scene's objects that show or cast a visible shadow.
 pub fn add(drawing: &mut Drawing) -> Result<(), DrawError> {
@@ -23,12 +21,12 @@ pub fn add(drawing: &mut Drawing) -> Result<(), DrawError> {
 fn add_one(drawing: &mut Drawing, object: &Object) -> Result<Option<u32>, DrawError> {
     let view_from_model = drawing.view_from_world * world_from_model(&object.placement);
     let scale = object.placement.scale.abs().max_element();
-    let center = view_from_model.translation;
-    let relevance = drawing.relevance(center, CIRCUMRADIUS * scale);
+    let hull = corners(&view_from_model);
+    let relevance = drawing.relevance(&hull);
     if !relevance.any() {
         return Ok(None);
     }
-    let mesh = shape_mesh(object.shape, detail(drawing, center, scale, relevance));
+    let mesh = shape_mesh(object.shape, detail(drawing, &hull, scale, relevance));
     let material = if drawing.options.shading && relevance.in_view {
         let list = &mut drawing.drawn.list;
         drawing.surfaces.of_object(&object.material, drawing.library, list)?
@@ -55,12 +53,21 @@ fn add_one(drawing: &mut Drawing, object: &Object) -> Result<Option<u32>, DrawEr
     Ok(Some(index))
 }
 
+/// The corners of the unit cube, which holds every shape.
+fn corners(view_from_model: &DAffine3) -> [Sphere; 8] {
+    let side = |corner: usize, axis: usize| if corner >> axis & 1 == 0 { -0.5 } else { 0.5 };
+    std::array::from_fn(|k| Sphere {
+        center: view_from_model.transform_point3(DVec3::new(side(k, 0), side(k, 1), side(k, 2))),
+        radius_m: 0.0,
+    })
+}
+
 /// The coarsest detail whose circles leave their polygons by less than the wanted error.
-fn detail(drawing: &Drawing, center: DVec3, scale: f64, relevance: Relevance) -> Detail {
+fn detail(drawing: &Drawing, hull: &[Sphere], scale: f64, relevance: Relevance) -> Detail {
     if !relevance.in_view {
         return Detail::Low;
     }
-    let px_per_m = drawing.px_per_m(center, CIRCUMRADIUS * scale);
+    let px_per_m = drawing.px_per_m(hull);
     let error_px = |d: &Detail| d.chord_error() * scale * px_per_m;
     let fine_enough = |d: &&Detail| error_px(d) <= drawing.options.lod_error_px;
     Detail::ALL.iter().rev().find(fine_enough).copied().unwrap_or(Detail::High)

@@ -8,6 +8,7 @@ use std::sync::Arc;
 use glam::{DAffine3, DVec3};
 use rayon::prelude::*;
 
+use super::frustum::Sphere;
 use super::objects::world_from_model;
 use super::{Cast, DrawError, Drawing, DrawnPerson, Relevance, abi, rows};
 use crate::geometry::body::RestBody;
@@ -39,8 +40,8 @@ struct Posed<'a> {
     skeleton: PosedSkeleton,
     view_from_model: DAffine3,
     scale: f64,
-    center_in_view: DVec3,
-    radius_m: f64,
+    /// No vertex leaves the hull of these.
+    hull: Vec<Sphere>,
 }
 
 /// Adds the scene's people: keypoints of all, meshes of those that matter to the picture.
@@ -89,11 +90,13 @@ fn pose_one<'a>(
     skeleton.ground(contacts);
     let view_from_model = *view_from_world * world_from_model(&person.placement);
     let scale = person.placement.scale.abs().max_element();
-    let (center, radius_m) = bounds(&skeleton, &body);
-    let radius_m = radius_m + skirt_reach_m(&person.outfit);
+    let cloth_m = skirt_reach_m(&person.outfit);
+    let sphere = |j: usize| Sphere {
+        center: view_from_model.transform_point3(skeleton.joint_m(j, body.heads_m[j])),
+        radius_m: (body.reach_m[j] + cloth_m) * scale,
+    };
     Ok(Posed {
-        center_in_view: view_from_model.transform_point3(center),
-        radius_m: radius_m * scale,
+        hull: (0..JOINT_COUNT).map(sphere).collect(),
         person,
         key,
         body,
@@ -140,22 +143,11 @@ fn skirt_reach_m(outfit: &Outfit) -> f64 {
     skirt + coat
 }
 
-/// Centre and radius of a sphere round the posed, dressed body, model space.
-fn bounds(skeleton: &PosedSkeleton, body: &RestBody) -> (DVec3, f64) {
-    let joints: [DVec3; JOINT_COUNT] =
-        std::array::from_fn(|j| skeleton.joint_m(j, body.heads_m[j]));
-    let low = joints.iter().copied().fold(DVec3::INFINITY, DVec3::min);
-    let high = joints.iter().copied().fold(DVec3::NEG_INFINITY, DVec3::max);
-    let center = (low + high) * 0.5;
-    let spheres = joints.iter().zip(&body.reach_m);
-    (center, spheres.map(|(j, reach)| j.distance(center) + reach).fold(0.0, f64::max))
-}
-
 fn relevance(drawing: &Drawing, posed: &Posed) -> Relevance {
     if !drawing.options.raster {
         return Relevance { in_view: false, casts_shadow: false };
     }
-    drawing.relevance(posed.center_in_view, posed.radius_m)
+    drawing.relevance(&posed.hull)
 }
 
 /// The coarsest level whose error stays below the wanted one at the person's nearest point; who
@@ -165,7 +157,7 @@ fn level_of_detail(drawing: &Drawing, posed: &Posed, relevance: Relevance) -> us
     if !relevance.in_view {
         return LOD_COUNT - 1;
     }
-    let px_per_m = drawing.px_per_m(posed.center_in_view, posed.radius_m) * posed.scale;
+    let px_per_m = drawing.px_per_m(&posed.hull) * posed.scale;
     let error_px = |lod: usize| f64::from(figure.lod_error_m(lod)) * px_per_m;
     (0..LOD_COUNT).rev().find(|&l| error_px(l) <= drawing.options.lod_error_px).unwrap_or(0)
 }
@@ -176,7 +168,7 @@ fn add_mesh(
     relevance: Relevance,
     dressed: &Dressed,
 ) -> Result<u32, DrawError> {
-    let px_per_m = drawing.px_per_m(posed.center_in_view, posed.radius_m) * posed.scale;
+    let px_per_m = drawing.px_per_m(&posed.hull) * posed.scale;
     let list = &mut drawing.drawn.list;
     let index = list.objects.len() as u32;
     for part in &dressed.parts {
