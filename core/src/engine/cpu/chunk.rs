@@ -9,7 +9,6 @@ use super::bin::{Bins, ChunksByTile};
 use super::shadow::Bounds;
 use super::skin::Placed;
 use crate::draw::DrawList;
-use crate::draw::abi::Draw;
 use crate::engine::EngineError;
 
 /// Triangles of a mesh that make a chunk.
@@ -106,9 +105,16 @@ pub(super) struct Chunk {
     pub(super) border_bounds: Bounds,
 }
 
+/// Parts of a range of triangles, each a chunk.
+fn divided(triangles: &Range<u32>) -> impl Iterator<Item = Range<u32>> {
+    let end = triangles.end;
+    (triangles.start..end).step_by(CHUNK as usize).map(move |start| start..end.min(start + CHUNK))
+}
+
 /// The chunks of one raster pass, in draw order.
 #[derive(Default)]
 pub(super) struct ChunkList {
+    /// Those in use first, then buffers that this pass does not need.
     chunks: Vec<Chunk>,
     used: usize,
     by_tile: ChunksByTile,
@@ -122,39 +128,44 @@ impl ChunkList {
         placed: &Placed,
         wanted: &[bool],
     ) -> Result<(), EngineError> {
-        self.used = 0;
-        for (index, draw) in list.draws.iter().enumerate() {
-            if wanted[draw.object as usize] {
-                self.divide(list, placed, index as u32, draw);
-            }
-        }
+        let draws = list.draws.iter().enumerate();
+        let parts: Vec<(usize, Range<u32>)> = draws
+            .filter(|(_, draw)| wanted[draw.object as usize])
+            .flat_map(|(index, draw)| divided(&draw.triangles).map(move |part| (index, part)))
+            .collect();
         let limit = 1 << (32 - TRIANGLE_BITS);
-        if self.used >= limit {
-            let (what, got) = ("number of chunks of 4096 triangles", self.used as u64);
+        if parts.len() >= limit {
+            let (what, got) = ("number of chunks of 4096 triangles", parts.len() as u64);
             return Err(EngineError::TooLarge { what, got, limit: limit as u64 - 1 });
+        }
+        self.hand_out_buffers(&parts);
+        for (chunk, (index, part)) in self.chunks.iter_mut().zip(parts) {
+            let draw = &list.draws[index];
+            let object = draw.object as usize;
+            chunk.draw = index as u32;
+            chunk.object = draw.object;
+            chunk.source = part.start as usize..part.end as usize;
+            chunk.first_vertex = placed.first_vertex[object] as u32;
+            chunk.mirrored = placed.mirrored[object];
+            chunk.double_sided = draw.double_sided;
+            chunk.smooth = list.objects[object].smooth;
         }
         Ok(())
     }
 
-    fn divide(&mut self, list: &DrawList, placed: &Placed, index: u32, draw: &Draw) {
-        let object = &list.objects[draw.object as usize];
-        let mut start = draw.triangles.start;
-        while start < draw.triangles.end {
-            let end = draw.triangles.end.min(start + CHUNK);
-            if self.used == self.chunks.len() {
-                self.chunks.push(Chunk::default());
-            }
-            let chunk = &mut self.chunks[self.used];
-            self.used += 1;
-            chunk.draw = index;
-            chunk.object = draw.object;
-            chunk.source = start as usize..end as usize;
-            chunk.first_vertex = placed.first_vertex[draw.object as usize] as u32;
-            chunk.mirrored = placed.mirrored[draw.object as usize];
-            chunk.double_sided = draw.double_sided;
-            chunk.smooth = object.smooth;
-            start = end;
+    /// Gives the largest of the buffers there are to the parts with most triangles: if each part
+    /// took what lay at its place, every buffer would grow to the largest part of all frames.
+    fn hand_out_buffers(&mut self, parts: &[(usize, Range<u32>)]) {
+        self.used = parts.len();
+        let mut stock = std::mem::take(&mut self.chunks);
+        stock.sort_by_key(|chunk| chunk.triangles.capacity());
+        let mut by_size: Vec<usize> = (0..parts.len()).collect();
+        by_size.sort_by_key(|&i| std::cmp::Reverse(parts[i].1.len()));
+        self.chunks.resize_with(parts.len(), Chunk::default);
+        for (place, chunk) in by_size.into_iter().zip(std::iter::from_fn(|| stock.pop())) {
+            self.chunks[place] = chunk;
         }
+        self.chunks.append(&mut stock);
     }
 
     /// Sorts the chunks, once set up, by the tiles of a picture, `1 << tile_log2` pixels wide.

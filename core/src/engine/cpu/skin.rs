@@ -119,7 +119,10 @@ impl Placed {
             self.mirrored.push(rigid && determinant(&object.view_from_model) < 0.0);
         }
         self.first_vertex.push(end);
+        // Exactly: the largest frame yet is seldom followed by one twice as large.
+        self.vertices.reserve_exact(end.saturating_sub(self.vertices.len()));
         self.vertices.resize(end, Vertex::default());
+        self.screen.reserve_exact(end.saturating_sub(self.screen.len()));
         self.screen.resize(end, ScreenVertex::default());
     }
 }
