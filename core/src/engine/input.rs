@@ -4,6 +4,7 @@
 use super::EngineError;
 use crate::draw::DrawList;
 use crate::draw::abi::{Draw, Material};
+use crate::library::mesh::Triangle;
 use crate::library::texture::Texture;
 
 /// Largest side of a picture or shadow map in pixels.
@@ -157,7 +158,7 @@ fn check_draw(list: &DrawList, index: usize, draw: &Draw) -> Result<(), EngineEr
             "a range of its mesh's triangles",
         );
     };
-    if triangles.is_empty() {
+    if Triangle::all_within(triangles, mesh.positions.len()) {
         return Ok(());
     }
     let highest = triangles.iter().fold([0; 3], |most, t| largest(most, t.get()));

@@ -74,6 +74,28 @@ impl Triangle {
         const LOW: u64 = Triangle::MAX_VERTICES as u64 - 1;
         [(self.0 & LOW) as u32, (self.0 >> 21 & LOW) as u32, (self.0 >> 42) as u32]
     }
+
+    /// Whether all triangles name none but the first so many vertices.
+    #[must_use]
+    pub fn all_within(triangles: &[Self], vertices: usize) -> bool {
+        const ONE: u64 = Triangle::MAX_VERTICES as u64 - 1;
+        const OUTER: u64 = ONE | ONE << 42;
+        const ABOVE_OUTER: u64 = 1 << 21 | 1 << 63;
+        const MIDDLE: u64 = ONE << 21;
+        const ABOVE_MIDDLE: u64 = 1 << 42;
+        let Some(last) = vertices.min(Self::MAX_VERTICES as usize).checked_sub(1) else {
+            return triangles.is_empty();
+        };
+        // The bit above each number's room is set, and a subtraction takes it away where the number
+        // is larger than the last. The outer two go together: the middle's room holds their bit.
+        let outer = ABOVE_OUTER | last as u64 | (last as u64) << 42;
+        let middle = ABOVE_MIDDLE | (last as u64) << 21;
+        let kept = triangles.iter().fold(ABOVE_OUTER | ABOVE_MIDDLE, |kept, t| {
+            let (of_outer, of_middle) = (outer - (t.0 & OUTER), middle - (t.0 & MIDDLE));
+            kept & (of_outer & ABOVE_OUTER | of_middle & ABOVE_MIDDLE)
+        });
+        kept == ABOVE_OUTER | ABOVE_MIDDLE
+    }
 }
 
 /// A direction in 4 bytes: the octahedron |x| + |y| + |z| = 1 unfolded onto a square (Meyer et al.,
@@ -167,6 +189,26 @@ mod tests {
         for t in [[0, 1, 2], [90_600, 5, 70_000], [(1 << 21) - 1; 3]] {
             assert_eq!(Triangle::new(t).get(), t);
         }
+    }
+
+    #[test]
+    fn a_vertex_beyond_the_last_is_seen_at_each_corner() {
+        let most = Triangle::MAX_VERTICES - 1;
+        for last in [0, 1, 54, 70_000, most] {
+            for corners in [[last, 0, last], [0, last, 0], [last; 3]] {
+                let fine = [Triangle::new([0; 3]), Triangle::new(corners)];
+                assert!(Triangle::all_within(&fine, last as usize + 1), "{corners:?}");
+                assert!(!Triangle::all_within(&fine, last as usize), "{corners:?}");
+            }
+            for corner in 0..3 {
+                let mut corners = [0; 3];
+                corners[corner] = last;
+                let one = [Triangle::new(corners), Triangle::new([0; 3])];
+                assert!(!Triangle::all_within(&one, last as usize), "{corners:?}");
+                assert!(Triangle::all_within(&one, 1 << 30));
+            }
+        }
+        assert!(Triangle::all_within(&[], 0));
     }
 
     #[test]
