@@ -96,34 +96,29 @@ impl ImageBuffer for MeanChroma<'_> {
         let stride = 3 * usize::from(self.width);
         let row = &self.rgb[usize::from(y) * stride..][..stride];
         luma.extend(row.as_chunks().0.iter().map(|&[r, g, b]| rgb_to_ycbcr(r, g, b).0));
-        let len = luma.len();
+        let start = blue.len();
+        blue.resize(luma.len(), 0);
+        red.resize(luma.len(), 0);
         // The encoder takes every other row; the last one is repeated downwards, so that it may
         // come in the place of a first one.
         let last = y + 1 == self.height;
         if y % 2 == 1 && !last {
-            blue.resize(len, 0);
-            red.resize(len, 0);
             return;
         }
         let below = if last { row } else { &self.rgb[(usize::from(y) + 1) * stride..][..stride] };
-        let mut add = |sum: [u32; 3]| {
-            let [r, g, b] = sum.map(|sum| ((sum + 2) / 4) as u8);
-            let (_, cb, cr) = rgb_to_ycbcr(r, g, b);
-            blue.extend([cb, cb]);
-            red.extend([cr, cr]);
-        };
-        let (pairs, rest) = row.as_chunks::<6>();
-        let (pairs_below, rest_below) = below.as_chunks::<6>();
-        for (a, b) in pairs.iter().zip(pairs_below) {
-            add(std::array::from_fn(|c| {
-                [a[c], a[c + 3], b[c], b[c + 3]].map(u32::from).iter().sum()
-            }));
+        let places = blue[start..].chunks_mut(2).zip(red[start..].chunks_mut(2));
+        let pixels = row.chunks(6).zip(below.chunks(6));
+        for ((blue, red), (a, b)) in places.zip(pixels) {
+            // Of the last column of an odd width there is one.
+            let right = a.len() - 3;
+            let mean = |c: usize| {
+                let sum = [a[c], a[right + c], b[c], b[right + c]].map(u32::from);
+                ((sum.iter().sum::<u32>() + 2) / 4) as u8
+            };
+            let (_, cb, cr) = rgb_to_ycbcr(mean(0), mean(1), mean(2));
+            blue.fill(cb);
+            red.fill(cr);
         }
-        if let (&[r, g, b], &[r2, g2, b2]) = (rest, rest_below) {
-            add([(r, r2), (g, g2), (b, b2)].map(|(a, b)| 2 * (u32::from(a) + u32::from(b))));
-        }
-        blue.truncate(len);
-        red.truncate(len);
     }
 }
 
