@@ -1,6 +1,7 @@
 // Raster: primitive and depth of every sample of a band of the picture.
 //
-// Reads primitives by tile, writes samples, those of a pixel side by side. One workgroup a tile.
+// Reads primitives by tile, writes samples, those of a pixel side by side. A workgroup takes as many
+// tiles, side by side, as have 64 invocations.
 
 @group(0) @binding(1) var<storage, read> raster_target: Target;
 @group(0) @binding(2) var<storage, read> primitives: array<Primitive>;
@@ -10,11 +11,16 @@
 // Primitive and bits of the depth.
 @group(0) @binding(6) var<storage, read_write> samples: array<vec2<u32>>;
 
-@compute @workgroup_size(LANES)
-fn main(@builtin(workgroup_id) tile: vec3<u32>, @builtin(local_invocation_index) lane: u32) {
-    raster_tile(tile.xy, lane);
+@compute @workgroup_size(64)
+fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index) index: u32) {
+    let tile = vec2<u32>(group.x * (64u / LANES) + index / LANES, group.y);
+    if tile.x >= raster_target.tiles.x {
+        return;
+    }
+    let lane = index % LANES;
+    raster_tile(tile, lane);
     for (var k = 0u; k < PIXELS; k++) {
-        let pixel = (tile.xy << vec2<u32>(TILE_LOG2)) + vec2<u32>(pixel_of(lane, k));
+        let pixel = (tile << vec2<u32>(TILE_LOG2)) + vec2<u32>(pixel_of(lane, k));
         if pixel.x < raster_target.width && pixel.y < raster_target.band_height {
             let first = (pixel.y * raster_target.width + pixel.x) * SAMPLES;
             for (var s = 0u; s < SAMPLES; s++) {

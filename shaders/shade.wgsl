@@ -11,9 +11,10 @@
 @group(0) @binding(4) var<storage, read> vertices: array<Vertex>;
 @group(0) @binding(5) var<storage, read> samples: array<vec2<u32>>;
 @group(0) @binding(6) var<storage, read> texels: array<u32>;
-@group(0) @binding(7) var<storage, read> lights: array<Light>;
-@group(0) @binding(8) var<storage, read> shadow_map: ShadowMap;
-@group(0) @binding(9) var<storage, read_write> picture: array<u32>;
+@group(0) @binding(7) var<uniform> lamps: array<Light, MAX_LAMPS>;
+@group(0) @binding(8) var<uniform> sun_view: SunView;
+@group(0) @binding(9) var<storage, read> shadow_map: array<f32>;
+@group(0) @binding(10) var<storage, read_write> picture: array<u32>;
 
 // Cosine of the angle between faces, in 1/127 squared, below which an edge counts as a crease
 // that must not be shaded as one: 37 degrees.

@@ -228,5 +228,7 @@ const LARGE_ROOM: u32 = 4096u;
 
 // Words of the sun's map in front of its texels: the SunView.
 const HEADER: u32 = 20u;
+// Point lights that there is room for.
+const MAX_LAMPS: u32 = 512u;
 
 @group(0) @binding(0) var<uniform> frame: Frame;

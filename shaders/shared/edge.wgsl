@@ -20,3 +20,11 @@ fn edge_start(a: i32, b: i32, x: i32, y: i32, bias: i32, shift: u32) -> EdgeStar
     let biased = add_wide(value, Wide(bitcast<u32>(bias), bias));
     return EdgeStart(shift_wide(biased, shift), float_wide(value));
 }
+
+fn least(v: vec3<i32>) -> i32 {
+    return min(min(v.x, v.y), v.z);
+}
+
+fn most(v: vec3<i32>) -> i32 {
+    return max(max(v.x, v.y), v.z);
+}

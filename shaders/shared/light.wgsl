@@ -97,20 +97,7 @@ fn surrounding(r: Reflector, roughness: f32) -> vec3<f32> {
     return hemisphere(upwards) * r.diffuse + hemisphere(mirrored_upwards) * mirror;
 }
 
-// Which of 32 lamps reach a surface, a bit each.
-fn reaching(r: Reflector, first: u32) -> u32 {
-    var found = 0u;
-    let end = min(frame.light_count - first, 32u);
-    for (var i = 0u; i < end; i++) {
-        let to_light = lights[first + i].position - r.position;
-        let in_range = dot(to_light, to_light) * lights[first + i].per_range_m2 < 1.0;
-        let faces = dot(r.normal, to_light) > 0.0 || r.wrap > 0.0;
-        found |= select(0u, 1u << i, in_range && faces);
-    }
-    return found;
-}
-
-// Light of a lamp; nothing beyond its range.
+// Light of a lamp; nothing beyond its range or behind the surface.
 fn lamp(r: Reflector, light: Light) -> vec3<f32> {
     let to_light = light.position - r.position;
     let distance2 = max(dot(to_light, to_light), 1e-12);
@@ -143,12 +130,9 @@ fn reflected(point: SurfacePoint, look: Look, metallic: f32, wrap: f32) -> vec3<
             }
         }
     }
-    for (var first = 0u; first < frame.light_count; first += 32u) {
-        var rest = reaching(r, first);
-        while rest != 0u {
-            sum += lamp(r, lights[first + firstTrailingBit(rest)]);
-            rest &= rest - 1u;
-        }
+    // All invocations look at the same lamp at a time, which one load serves.
+    for (var i = 0u; i < frame.light_count; i++) {
+        sum += lamp(r, lamps[i]);
     }
     return sum;
 }

@@ -2,8 +2,10 @@
 //
 // Coverage by exact integer edge functions with the top-left rule; the nearest sample wins, of
 // equals the earlier drawn, so that the order of the lists does not matter. An invocation owns
-// PIXELS pixels of the tile of 64. Needs raster_target, primitives, tiles, lists and counters.
+// PIXELS pixels of the tile of 64, so that a primitive is read by few of them. Needs raster_target,
+// primitives, tiles, lists and counters.
 
+// Invocations of a tile.
 const LANES: u32 = 64u / PIXELS;
 const KEPT: u32 = PIXELS * SAMPLES;
 

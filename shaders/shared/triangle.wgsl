@@ -31,14 +31,6 @@ fn area_of(x: vec3<i32>, y: vec3<i32>) -> Wide {
     return add_wide(first, negate_wide(second));
 }
 
-fn least(v: vec3<i32>) -> i32 {
-    return min(min(v.x, v.y), v.z);
-}
-
-fn most(v: vec3<i32>) -> i32 {
-    return max(max(v.x, v.y), v.z);
-}
-
 // Whether no row of samples lies between two coordinates.
 fn misses_rows(low: i32, high: i32) -> bool {
     let log2 = raster_target.row_step_log2;

@@ -209,6 +209,8 @@ pub const TRIANGLE_BATCH: u32 = 64;
 pub const BATCHES_ACROSS: u32 = 32_768;
 /// Side of a tile in pixels.
 pub const TILE: u32 = 8;
+/// Point lights that there is room for.
+pub const MAX_LAMPS: u32 = 512;
 /// Entries in front of the tiles' lists.
 pub const LARGE_ROOM: u32 = 4096;
 /// [`Surface::flags`].

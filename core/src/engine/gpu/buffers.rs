@@ -122,7 +122,7 @@ const fn name(resource: Resource) -> &'static str {
         Resource::Bounds | Resource::Sums => "graphics memory of objects",
         Resource::Tiles | Resource::Lists => "graphics memory of tiles",
         Resource::Samples => "graphics memory of samples",
-        Resource::ShadowMap => "graphics memory of the shadow map",
+        Resource::ShadowMap | Resource::SunView => "graphics memory of the shadow map",
         Resource::Picture | Resource::Resolved => "graphics memory of the picture",
     }
 }

@@ -33,7 +33,7 @@ pub use adapter::{AdapterReport, GpuError, GpuOptions, adapters, choice};
 use std::sync::Arc;
 use std::time::Instant;
 
-use self::abi::{Bounds, Counters, LARGE_ROOM, ObjectSums, Primitive};
+use self::abi::{Bounds, Counters, LARGE_ROOM, MAX_LAMPS, ObjectSums, Primitive};
 use self::buffers::Buffers;
 use self::device::Device;
 use self::pack::{Packed, Wanted};
@@ -238,7 +238,13 @@ impl State {
         buffers.write(device, Resource::SunBatches, &packed.sun_batches)?;
         buffers.write(device, Resource::Palette, &packed.palette)?;
         buffers.write(device, Resource::Surfaces, &packed.surfaces)?;
+        let (got, limit) = (packed.lights.len() as u64, u64::from(MAX_LAMPS));
+        if got > limit {
+            return Err(EngineError::TooLarge { what: "number of point lights", got, limit });
+        }
+        buffers.ensure(device, Resource::Lights, limit * size_of::<abi::Light>() as u64)?;
         buffers.write(device, Resource::Lights, &packed.lights)?;
+        buffers.ensure(device, Resource::SunView, size_of::<abi::SunView>() as u64)?;
         let sun = pack::sun_target(packed);
         buffers.write(device, Resource::SunTarget, &[sun])?;
         let objects = list.objects.len() as u64;

@@ -2,10 +2,10 @@
 
 use std::time::Duration;
 
-use super::abi::{BATCHES_ACROSS, TILE, Target};
+use super::abi::{BATCHES_ACROSS, SunView, TILE, Target};
 use super::buffers::Buffers;
 use super::device::Device;
-use super::stage::{Resource, Stage};
+use super::stage::{Resource, Stage, pixels_of_lane};
 use crate::plan::{Pass, PassPlan, StageTimes};
 
 /// What the device's clock says at the start and end of each stage.
@@ -68,7 +68,7 @@ type Groups = [u32; 3];
 /// Workgroups that share the triangles to be cut, of which there are few.
 const CLIPPERS: Groups = [16, 1, 1];
 /// Workgroups that share the larger triangles of the sun's map.
-const SHADOW_GROUPS: Groups = [512, 1, 1];
+const SHADOW_GROUPS: Groups = [256, 1, 1];
 
 /// Pixels of a strip of `reduce.wgsl`, times the strips of a workgroup.
 const REDUCE_WIDTH: u32 = 64;
@@ -113,6 +113,8 @@ impl Recorder<'_> {
         self.run(Stage::SunSetup, batches(batch_count));
         self.run(Stage::SunClip, CLIPPERS);
         self.run(Stage::Shadow, SHADOW_GROUPS);
+        let [map, view] = [Resource::ShadowMap, Resource::SunView].map(|r| self.buffers.get(r));
+        self.encoder.copy_buffer_to_buffer(map, 0, view, 0, Some(size_of::<SunView>() as u64));
     }
 
     /// Finds what the band's samples show.
@@ -125,7 +127,7 @@ impl Recorder<'_> {
         self.run(Stage::Scan, [1; 3]);
         self.run(Stage::Scatter, walkers);
         let [columns, rows] = self.target.tiles;
-        self.run(Stage::Raster, [columns, rows, 1]);
+        self.run(Stage::Raster, [columns.div_ceil(pixels_of_lane(self.samples)), rows, 1]);
     }
 
     /// Makes what the plan asks for from the samples.

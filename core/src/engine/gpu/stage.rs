@@ -39,6 +39,8 @@ pub enum Resource {
     Samples,
     /// [`super::abi::SunView`], then texels.
     ShadowMap,
+    /// The first of the sun's map once more, as a small block.
+    SunView,
     Picture,
     Resolved,
     Sums,
@@ -260,7 +262,8 @@ impl Stage {
                 (R::Vertices, Read),
                 (R::Samples, Read),
                 (R::Texels, Read),
-                (R::Lights, Read),
+                (R::Lights, Uniform),
+                (R::SunView, Uniform),
                 (R::ShadowMap, Read),
                 (R::Picture, Write),
             ],
@@ -284,10 +287,10 @@ impl Stage {
             Self::Project => &[ABI, DOUBLE, PROJECT, file!("project.wgsl")],
             Self::Bound => &[ABI, BOUNDS, file!("bound.wgsl")],
             Self::Fit => &[ABI, DOUBLE, BOUNDS, file!("fit.wgsl")],
-            Self::Setup => &[ABI, WIDE, TRIANGLE, file!("setup.wgsl")],
+            Self::Setup => &[ABI, WIDE, EDGE, TRIANGLE, file!("setup.wgsl")],
             Self::SunSetup => &[ABI, WIDE, EDGE, TRIANGLE, file!("sun_setup.wgsl")],
             Self::Clip | Self::SunClip => {
-                &[ABI, DOUBLE, WIDE, PROJECT, BOUNDS, TRIANGLE, file!("clip.wgsl")]
+                &[ABI, DOUBLE, WIDE, EDGE, PROJECT, BOUNDS, TRIANGLE, file!("clip.wgsl")]
             }
             Self::Count | Self::Scatter => &[ABI, file!("bin.wgsl")],
             Self::Scan => &[ABI, file!("scan.wgsl")],
@@ -333,13 +336,23 @@ fn text_of((name, text): File) -> String {
     text.to_owned()
 }
 
+/// Pixels of a tile of 64 that one invocation of `raster` owns: as many as its registers hold the
+/// samples of.
+pub const fn pixels_of_lane(samples: u32) -> u32 {
+    match samples {
+        1 => 8,
+        4 => 2,
+        _ => 1,
+    }
+}
+
 /// What differs between the variants of a shader.
 fn constants(samples: u32) -> String {
     let positions: Vec<String> =
         pattern::positions(samples).iter().map(|[x, y]| format!("vec2<i32>({x}, {y})")).collect();
     // With one sample a pixel, positions are whole pixels from its middle, else sixteenths.
     let (grid_log2, corner) = if samples == 1 { (10, 8) } else { (6, 0) };
-    let pixels = if samples == 16 { 1 } else { 2 };
+    let pixels = pixels_of_lane(samples);
     format!(
         "const SAMPLES: u32 = {samples}u;\n\
          const POSITIONS = array<vec2<i32>, {samples}>({});\n\

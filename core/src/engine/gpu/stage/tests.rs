@@ -180,6 +180,7 @@ fn shared_constants_are_the_same() {
         ("SMOOTH: u32 = ", abi::SMOOTH),
         ("BATCHES_ACROSS: u32 = ", abi::BATCHES_ACROSS),
         ("LARGE_ROOM: u32 = ", abi::LARGE_ROOM),
+        ("MAX_LAMPS: u32 = ", abi::MAX_LAMPS),
         ("TILE_LOG2: u32 = ", abi::TILE.ilog2()),
     ] {
         assert!(text.contains(&format!("const {name}{value}u;")), "{name}");
