@@ -10,3 +10,4 @@ mod export;
 mod limits;
 mod parity;
 mod scenes;
+mod vertices;

@@ -76,8 +76,9 @@ fn transform(rows: &[[f32; 4]; 3]) -> (DMat3, DVec3) {
     (linear, DVec3::new(r[0][3], r[1][3], r[2][3]))
 }
 
-/// Position and normal of a vertex in view space.
-fn place(list: &DrawList, object: &DrawObject, vertex: usize) -> (DVec3, DVec3) {
+/// Position and unit normal of a vertex in view space.
+#[must_use]
+pub fn place(list: &DrawList, object: &DrawObject, vertex: usize) -> (DVec3, DVec3) {
     let mesh = &object.mesh;
     let (p, n) = (point(mesh.positions[vertex]), point(mesh.normals[vertex].unit()));
     if mesh.skin.is_empty() {

@@ -24,11 +24,13 @@ mod buffers;
 mod device;
 mod pack;
 mod pool;
+mod probe;
 mod readback;
 mod record;
 mod stage;
 
 pub use adapter::{AdapterReport, GpuError, GpuOptions, adapters, choice};
+pub use probe::PlacedVertex;
 
 use std::sync::Arc;
 use std::time::Instant;
