@@ -1,0 +1,150 @@
+//! The picture: what is shown, where, and what the pointer does with it.
+
+pub mod fly;
+pub mod overlay;
+pub mod paint;
+pub mod preview;
+pub mod worker;
+pub mod zoom;
+
+use std::sync::Arc;
+
+use eframe::egui::{
+    Align2, Color32, CursorIcon, FontId, Key, PointerButton, Rect, Response, Role, Sense, Ui,
+    WidgetInfo, pos2, vec2,
+};
+use glam::DVec3;
+
+use self::overlay::Map;
+use self::paint::Screen;
+use self::worker::Shown;
+use self::zoom::{Pane, Zoom};
+use crate::overlay::Overlay;
+use crate::session::Session;
+use crate::theme;
+
+/// From this zoom on, pixels of the picture are shown as squares.
+const SHARP: f32 = 2.0;
+/// Radians a point of the pointer's way turns the free camera by.
+const TURN: f64 = 0.008;
+/// Metres a second that the free camera flies at.
+const SPEED_M_S: f64 = 2.5;
+/// How much faster with Shift.
+const FASTER: f64 = 4.0;
+
+/// Shows the picture and lets the pointer move it, or the free camera.
+pub fn ui(ui: &mut Ui, session: &mut Session, screen: &mut Screen) {
+    let rect = ui.available_rect_before_wrap();
+    let response = ui.allocate_rect(rect, Sense::click_and_drag());
+    response.widget_info(|| WidgetInfo::labeled(Role::Image, true, "Picture"));
+    ui.painter().rect_filled(rect, 0.0, theme::VOID);
+    let Some(shown) = session.shown.clone() else {
+        let text = match session.problems().next() {
+            Some(_) => "Nothing can be shown; see Problems.",
+            None => "Making the first picture \u{2026}",
+        };
+        let font = FontId::proportional(14.0);
+        ui.painter().text(rect.center(), Align2::CENTER_CENTER, text, font, theme::WEAK);
+        return;
+    };
+    let size = shown.request.size;
+    let pane = Pane {
+        rect,
+        size: vec2(size[0] as f32, size[1] as f32),
+        pixels_per_point: ui.pixels_per_point(),
+    };
+    steer(ui, &response, session, &pane);
+    let map = Map { rect: session.zoom.rect(&pane), size };
+    draw(ui, session, screen, &shown, &map, rect, session.zoom.factor(&pane));
+    if let Some(at) = response.hover_pos().filter(|_| !response.dragged()) {
+        let points = session.overlays.contains(&Overlay::Keypoints);
+        if let Some(text) = overlay::under(&map, &shown.annotations, at, points) {
+            response.on_hover_text_at_pointer(text);
+        }
+    }
+}
+
+fn draw(
+    ui: &Ui,
+    session: &Session,
+    screen: &mut Screen,
+    shown: &Arc<Shown>,
+    map: &Map,
+    clip: Rect,
+    factor: f32,
+) {
+    let painter = ui.painter().with_clip_rect(clip);
+    let whole = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
+    if let Some(texture) = screen.picture(ui.ctx(), shown, factor >= SHARP) {
+        painter.image(texture, map.rect, whole, Color32::WHITE);
+    }
+    if session.overlays.contains(&Overlay::Instance)
+        && let Some(texture) = screen.masks(ui.ctx(), shown)
+    {
+        painter.image(texture, map.rect, whole, Color32::WHITE);
+    }
+    if session.overlays.contains(&Overlay::Box2d) {
+        overlay::boxes(&painter, map, &shown.annotations);
+    }
+    if session.overlays.contains(&Overlay::Keypoints) {
+        overlay::keypoints(&painter, map, &shown.annotations);
+    }
+}
+
+/// What pointer and keys do over the picture.
+fn steer(ui: &Ui, response: &Response, session: &mut Session, pane: &Pane) {
+    if std::mem::take(&mut session.wants_actual_size) {
+        session.zoom.set(pane, 1.0);
+    }
+    let (by, scroll) = ui.input(|i| (i.zoom_delta(), i.smooth_scroll_delta().y));
+    let wheel = f64::from(scroll) * 0.005;
+    if let Some(at) = response.hover_pos() {
+        if by != 1.0 {
+            session.zoom.zoom_at(pane, at, by);
+        } else if wheel != 0.0 {
+            match &mut session.flight {
+                Some(flight) => flight.dolly((-wheel).exp()),
+                None => session.zoom.zoom_at(pane, at, wheel.exp() as f32),
+            }
+        }
+    }
+    if response.double_clicked() {
+        session.zoom = Zoom::Fit;
+    }
+    let by = response.drag_delta();
+    let [x, y] = [by.x, by.y].map(f64::from);
+    let (command, shift) = ui.input(|i| (i.modifiers.command, i.modifiers.shift));
+    let dragged = |button| response.dragged_by(button);
+    match &mut session.flight {
+        _ if command && response.dragged() => session.zoom.pan(pane, by),
+        None if response.dragged() => {
+            session.zoom.pan(pane, by);
+            ui.ctx().set_cursor_icon(CursorIcon::Grabbing);
+        }
+        Some(flight) if dragged(PointerButton::Middle) || (shift && response.dragged()) => {
+            let height = f64::from(session.zoom.rect(pane).height());
+            flight.pan(x / height, y / height);
+        }
+        Some(flight) if dragged(PointerButton::Secondary) => flight.look(-x * TURN, -y * TURN),
+        Some(flight) if dragged(PointerButton::Primary) => flight.orbit(-x * TURN, y * TURN),
+        _ => {}
+    }
+    fly(ui, session, shift);
+}
+
+/// Flies for as long as keys are held.
+fn fly(ui: &Ui, session: &mut Session, fast: bool) {
+    let Some(flight) = &mut session.flight else { return };
+    if ui.ctx().egui_wants_keyboard_input() {
+        return;
+    }
+    let step = ui.input(|i| {
+        let axis = |plus, minus| f64::from(i.key_down(plus)) - f64::from(i.key_down(minus));
+        DVec3::new(axis(Key::D, Key::A), axis(Key::E, Key::Q), axis(Key::S, Key::W))
+            * f64::from(i.stable_dt.min(0.1))
+    });
+    if step != DVec3::ZERO {
+        flight.fly(step * SPEED_M_S * if fast { FASTER } else { 1.0 });
+        ui.ctx().request_repaint();
+    }
+}
