@@ -548,6 +548,7 @@ fn the_doctor_reports_on_everything() {
         "3 colours",
         "32 x 24 pixels with 1 people",
         "easel (wood)",
+        "window      ",
     ] {
         assert!(ran.out.contains(part), "{part} in\n{}", ran.out);
     }

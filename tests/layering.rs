@@ -141,8 +141,16 @@ fn engines_share_no_code() {
 }
 
 /// What only some files may name, and the folders and files of the program that may.
-const WINDOWS: &[&str] =
-    &["command.rs", "layout.rs", "panels", "session.rs", "shell.rs", "theme.rs", "viewport"];
+const WINDOWS: &[&str] = &[
+    "command.rs",
+    "launch.rs",
+    "layout.rs",
+    "panels",
+    "session.rs",
+    "shell.rs",
+    "theme.rs",
+    "viewport",
+];
 
 #[test]
 fn windows_and_graphics_stay_where_they_belong() {

@@ -51,8 +51,8 @@ impl Default for Layout {
         let root = tiles.insert_horizontal_tile(vec![picture, column]);
         if let Some(egui_tiles::Tile::Container(Container::Linear(linear))) = tiles.get_mut(column)
         {
-            linear.shares.set_share(settings, 0.56);
-            linear.shares.set_share(report, 0.44);
+            linear.shares.set_share(settings, 0.58);
+            linear.shares.set_share(report, 0.42);
         }
         let tree = Tree::new(Id::unique("tiles"), root, tiles);
         Self { tree, root, picture, column, problems, width: 0.0, had_problems: false }

@@ -15,6 +15,8 @@ mod commands;
 mod console;
 mod exit;
 #[cfg(feature = "gui")]
+mod launch;
+#[cfg(feature = "gui")]
 mod layout;
 pub mod overlay;
 #[cfg(feature = "gui")]

@@ -4,6 +4,7 @@
 use std::collections::BTreeSet;
 use std::path::PathBuf;
 use std::sync::Arc;
+use std::time::Duration;
 
 use figurant_core::plan::{Output, Outputs};
 
@@ -15,6 +16,9 @@ use crate::viewport::fly::Flight;
 use crate::viewport::preview::{Answer, Preview};
 use crate::viewport::worker::{Renderer, Request, Shown};
 use crate::viewport::zoom::Zoom;
+
+/// Longest that a picture may take while the free camera moves, before smaller ones are made.
+const SMOOTH: Duration = Duration::from_millis(33);
 
 /// Something that is wrong, for people to read.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -87,6 +91,10 @@ pub struct Session {
     pub scale: Scale,
     /// The free camera, while it is in use.
     pub flight: Option<Flight>,
+    /// Whether the free camera is on the move, so that speed counts more than pixels.
+    pub moving: bool,
+    /// Whether pictures of full size come too slowly for a camera on the move.
+    slow: bool,
     /// What renders.
     pub renderer: Renderer,
     /// The graphics engine, if there is one.
@@ -95,6 +103,8 @@ pub struct Session {
     pub overlays: BTreeSet<Overlay>,
     /// Where the picture lies.
     pub zoom: Zoom,
+    /// Screen pixels to one of the picture, as it was drawn last.
+    pub zoom_factor: f32,
     /// Whether one pixel to a pixel was asked for; only the viewport knows its own size.
     pub wants_actual_size: bool,
     /// The last picture.
@@ -122,10 +132,13 @@ impl Session {
             seed: 0,
             scale: Scale::Full,
             flight: None,
+            moving: false,
+            slow: false,
             renderer,
             graphics,
             overlays: BTreeSet::from([Overlay::Box2d, Overlay::Keypoints]),
             zoom: Zoom::Fit,
+            zoom_factor: 1.0,
             wants_actual_size: false,
             shown: None,
             busy: false,
@@ -149,7 +162,8 @@ impl Session {
     /// Width and height of the picture that is wanted, pixels.
     #[must_use]
     pub fn size(&self) -> [u32; 2] {
-        self.size_at(self.scale)
+        let size = self.size_at(self.scale);
+        if self.moving && self.slow { size.map(|side| side.div_ceil(2)) } else { size }
     }
 
     /// Width and height of a picture of another scale, pixels.
@@ -209,6 +223,9 @@ impl Session {
             Answer::Opened(Err(error)) => self.config_problems = self.described(error),
             Answer::Shown(shown) => {
                 self.frame_problem = None;
+                if shown.request.size == self.size_at(self.scale) {
+                    self.slow = shown.wall > SMOOTH;
+                }
                 self.shown = Some(Arc::from(shown));
             }
             Answer::Failed(text) => {
@@ -240,7 +257,7 @@ impl Session {
                 preview.forget();
                 preview.open(self.path.clone());
             }
-            Command::DataCamera => self.flight = None,
+            Command::DataCamera => (self.flight, self.moving) = (None, false),
             Command::FreeCamera => {
                 if let (None, Some(shown)) = (self.flight, &self.shown) {
                     self.flight = Some(Flight::new(&shown.scene));

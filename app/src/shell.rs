@@ -1,12 +1,9 @@
 //! The window: `logic` takes what the preview has to say, `ui` shows the panels.
 
-use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::PathBuf;
-use std::sync::Arc;
 
-use eframe::egui::{self, Context, Ui, ViewportBuilder, vec2};
-use eframe::egui_wgpu::{RenderState, WgpuConfiguration, WgpuSetup};
-use eframe::{CreationContext, NativeOptions};
+use eframe::egui::{self, Context, Ui};
+use eframe::egui_wgpu::RenderState;
 use figurant_core::engine::gpu::GpuContext;
 
 use crate::command::Command;
@@ -100,41 +97,5 @@ impl eframe::App for Shell {
 
     fn ui(&mut self, ui: &mut Ui, _: &mut eframe::Frame) {
         Self::ui(self, ui);
-    }
-}
-
-/// Opens the window and waits until it is closed.
-///
-/// # Errors
-/// What a person can do about it, when there is no window system or no driver to draw with.
-pub fn open(path: Option<PathBuf>) -> Result<(), String> {
-    let title = "Figurant".to_owned();
-    let make = move |creation: &CreationContext<'_>| -> Result<Box<dyn eframe::App>, _> {
-        let render = creation.wgpu_render_state.clone();
-        Ok(Box::new(Shell::new(&creation.egui_ctx, render, path)?))
-    };
-    // Libraries of the window system that are missing make their bindings panic.
-    let ended =
-        catch_unwind(AssertUnwindSafe(|| eframe::run_native(&title, options(), Box::new(make))));
-    match ended {
-        Ok(Ok(())) => Ok(()),
-        Ok(Err(e)) => Err(e.to_string()),
-        Err(_) => Err("a library of the window system is missing".to_owned()),
-    }
-}
-
-fn options() -> NativeOptions {
-    let mut wgpu_options = WgpuConfiguration::default();
-    if let WgpuSetup::CreateNew(setup) = &mut wgpu_options.wgpu_setup {
-        setup.device_descriptor = Arc::new(GpuContext::descriptor);
-    }
-    NativeOptions {
-        viewport: ViewportBuilder::default()
-            .with_title("Figurant")
-            .with_app_id("figurant")
-            .with_inner_size(vec2(1280.0, 800.0))
-            .with_min_inner_size(vec2(640.0, 420.0)),
-        wgpu_options,
-        ..NativeOptions::default()
     }
 }

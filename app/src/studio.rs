@@ -137,7 +137,7 @@ impl Road for Native {
 
     fn window(&self, config: Option<&Path>) -> Result<(), String> {
         #[cfg(feature = "gui")]
-        return crate::shell::open(config.map(Path::to_owned));
+        return crate::launch::open(config.map(Path::to_owned));
         #[cfg(not(feature = "gui"))]
         {
             let _ = config;

@@ -140,6 +140,7 @@ fn the_wheel_zooms_and_double_clicks_fit() {
         unit: eframe::egui::MouseWheelUnit::Point,
         delta: vec2(0.0, 200.0),
         phase: eframe::egui::TouchPhase::Move,
+        source: eframe::egui::MouseWheelSource::Wheel,
         modifiers: Modifiers::NONE,
     });
     window.run_steps(20);
@@ -207,7 +208,7 @@ fn every_control_tells_what_it_does() {
         ("Boxes", "Draws the box"),
         ("Free", "Drag orbits"),
         ("Native", "same bytes on every machine"),
-        ("1/2", "48 x 48 pixels"),
+        ("1/2", "Renders 48 x 48 pixels"),
     ] {
         window.get_by_label(label).hover();
         window.run_steps(40);

@@ -1,6 +1,6 @@
 //! The panels: each a function over the session that it shows and changes.
 
-use eframe::egui::{Response, RichText, Ui};
+use eframe::egui::{Response, RichText, Separator, Ui};
 
 use crate::command::Command;
 use crate::session::Session;
@@ -27,9 +27,11 @@ pub fn side(ui: &mut Ui, session: &mut Session) {
 
 /// A heading with room above it.
 fn section(ui: &mut Ui, text: &str) {
-    ui.add_space(8.0);
-    ui.label(RichText::new(text).color(theme::WEAK).small());
-    ui.separator();
+    ui.add_space(3.0);
+    ui.horizontal(|ui| {
+        ui.label(RichText::new(text).color(theme::ACCENT).small());
+        ui.add(Separator::default().horizontal());
+    });
 }
 
 /// What a command's button tells when the pointer rests on it.

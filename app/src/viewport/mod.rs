@@ -15,6 +15,7 @@ use eframe::egui::{
 };
 use glam::DVec3;
 
+use self::fly::Flight;
 use self::overlay::Map;
 use self::paint::Screen;
 use self::worker::Shown;
@@ -27,6 +28,8 @@ use crate::theme;
 const SHARP: f32 = 2.0;
 /// Radians a point of the pointer's way turns the free camera by.
 const TURN: f64 = 0.008;
+/// How long the free camera must not move to be at rest, seconds.
+const REST_S: f64 = 0.15;
 /// Metres a second that the free camera flies at.
 const SPEED_M_S: f64 = 2.5;
 /// How much faster with Shift.
@@ -47,15 +50,15 @@ pub fn ui(ui: &mut Ui, session: &mut Session, screen: &mut Screen) {
         ui.painter().text(rect.center(), Align2::CENTER_CENTER, text, font, theme::WEAK);
         return;
     };
-    let size = shown.request.size;
-    let pane = Pane {
-        rect,
-        size: vec2(size[0] as f32, size[1] as f32),
-        pixels_per_point: ui.pixels_per_point(),
-    };
+    // A smaller picture of a camera on the move takes the same place.
+    let [width, height] = session.size_at(session.scale).map(|side| side as f32);
+    let pane = Pane { rect, size: vec2(width, height), pixels_per_point: ui.pixels_per_point() };
+    let before = session.flight;
     steer(ui, &response, session, &pane);
-    let map = Map { rect: session.zoom.rect(&pane), size };
-    draw(ui, session, screen, &shown, &map, rect, session.zoom.factor(&pane));
+    note_motion(ui, session, before);
+    session.zoom_factor = session.zoom.factor(&pane);
+    let map = Map { rect: session.zoom.rect(&pane), size: shown.request.size };
+    draw(ui, session, screen, &shown, &map, rect);
     if let Some(at) = response.hover_pos().filter(|_| !response.dragged()) {
         let points = session.overlays.contains(&Overlay::Keypoints);
         if let Some(text) = overlay::under(&map, &shown.annotations, at, points) {
@@ -71,11 +74,11 @@ fn draw(
     shown: &Arc<Shown>,
     map: &Map,
     clip: Rect,
-    factor: f32,
 ) {
     let painter = ui.painter().with_clip_rect(clip);
     let whole = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
-    if let Some(texture) = screen.picture(ui.ctx(), shown, factor >= SHARP) {
+    let sharp = map.rect.width() * ui.pixels_per_point() >= SHARP * map.size[0] as f32;
+    if let Some(texture) = screen.picture(ui.ctx(), shown, sharp && !session.moving) {
         painter.image(texture, map.rect, whole, Color32::WHITE);
     }
     if session.overlays.contains(&Overlay::Instance)
@@ -130,6 +133,23 @@ fn steer(ui: &Ui, response: &Response, session: &mut Session, pane: &Pane) {
         _ => {}
     }
     fly(ui, session, shift);
+}
+
+/// Notes whether the free camera moves; a moment after it came to rest a picture of full size is
+/// due.
+fn note_motion(ui: &Ui, session: &mut Session, before: Option<Flight>) {
+    let memory = ui.scope_id().with("moved");
+    let now = ui.input(|i| i.time);
+    if before.is_some() && session.flight != before {
+        ui.data_mut(|d| d.insert_temp(memory, now));
+        session.moving = true;
+    } else if session.moving {
+        let rested = now - ui.data(|d| d.get_temp::<f64>(memory)).unwrap_or(now);
+        session.moving = rested < REST_S;
+    }
+    if session.moving {
+        ui.ctx().request_repaint_after_secs(REST_S as f32 * 1.1);
+    }
 }
 
 /// Flies for as long as keys are held.
