@@ -30,10 +30,20 @@ def start_screen():
         stderr=subprocess.DEVNULL,
     )
     os.close(write)
-    number = os.read(read, 16).decode().strip()
-    os.close(read)
+    with os.fdopen(read) as told:
+        number = told.readline().strip()
     assert number, "Xvfb did not start"
-    return screen, f":{number}"
+    display = f":{number}"
+    # The number is told a moment before it can be used.
+    answers = lambda: probe(display) or None
+    wait_for("the screen", answers, screen)
+    return screen, display
+
+
+def probe(display):
+    query = ["xdotool", "getdisplaygeometry"]
+    env = dict(os.environ, DISPLAY=display)
+    return subprocess.run(query, env=env, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL).returncode == 0
 
 
 def screenshot(env):

@@ -1,6 +1,6 @@
 //! What renders.
 
-use eframe::egui::{RichText, Ui};
+use eframe::egui::{Label, RichText, Ui};
 
 use crate::session::Session;
 use crate::theme;
@@ -27,10 +27,11 @@ pub fn ui(ui: &mut Ui, session: &mut Session) {
                 .on_hover_text(&hint)
                 .on_disabled_hover_text(&hint);
         });
+        let adapter = match (session.renderer, &graphics) {
+            (Renderer::Graphics, Some(graphics)) => graphics.adapter.clone(),
+            _ => format!("{} threads", crate::commands::processors()),
+        };
+        let text = RichText::new(&adapter).color(theme::WEAK).small();
+        ui.add(Label::new(text).truncate()).on_hover_text(adapter);
     });
-    let adapter = match (session.renderer, &graphics) {
-        (Renderer::Graphics, Some(graphics)) => graphics.adapter.clone(),
-        _ => format!("{} threads", crate::commands::processors()),
-    };
-    ui.label(RichText::new(adapter).color(theme::WEAK).small());
 }

@@ -67,7 +67,8 @@ fn how_large(ui: &mut Ui, session: &mut Session) {
     ui.label("Zoom");
     ui.horizontal(|ui| {
         choice(ui, session, Command::Fit, session.zoom == Zoom::Fit);
-        choice(ui, session, Command::ActualSize, session.zoom_factor == 1.0);
+        let actual = session.zoom != Zoom::Fit && session.zoom_factor == 1.0;
+        choice(ui, session, Command::ActualSize, actual);
         let factor = format!("{:.0} %", session.zoom_factor * 100.0);
         ui.label(RichText::new(factor).color(theme::WEAK)).on_hover_text(
             "Pixels of the screen to one of the picture. The wheel zooms, with Ctrl under the free \

@@ -27,7 +27,7 @@ pub fn side(ui: &mut Ui, session: &mut Session) {
 
 /// A heading with room above it.
 fn section(ui: &mut Ui, text: &str) {
-    ui.add_space(3.0);
+    ui.add_space(1.0);
     ui.horizontal(|ui| {
         ui.label(RichText::new(text).color(theme::ACCENT).small());
         ui.add(Separator::default().horizontal());

@@ -1,6 +1,6 @@
 //! Where the time of the last frame went, and what was not computed.
 
-use eframe::egui::{Align, Grid, Layout, RichText, Sense, Ui, vec2};
+use eframe::egui::{Align, Grid, Layout, RichText, Sense, TextStyle, Ui, vec2};
 use figurant_core::plan::{Pass, Skipped};
 
 use crate::session::Session;
@@ -14,8 +14,9 @@ pub fn ui(ui: &mut Ui, session: &Session) {
     };
     let stages: Vec<(&str, f32)> =
         shown.times.iter().map(|(name, time)| (name, time.as_secs_f32() * 1e3)).collect();
+    ui.style_mut().override_text_style = Some(TextStyle::Small);
     let longest = stages.iter().map(|(_, ms)| *ms).fold(0.0, f32::max);
-    Grid::new("stages").num_columns(3).spacing([10.0, 2.0]).striped(true).show(ui, |ui| {
+    Grid::new("stages").num_columns(3).spacing([10.0, 0.0]).striped(true).show(ui, |ui| {
         for (name, ms) in stages {
             ui.label(name);
             number(ui, format!("{ms:.2}"));
@@ -37,7 +38,7 @@ pub fn ui(ui: &mut Ui, session: &Session) {
 }
 
 fn number(ui: &mut Ui, text: String) {
-    ui.allocate_ui_with_layout(vec2(48.0, 16.0), Layout::right_to_left(Align::Center), |ui| {
+    ui.allocate_ui_with_layout(vec2(48.0, 14.0), Layout::right_to_left(Align::Center), |ui| {
         ui.label(RichText::new(text).monospace());
     });
 }
