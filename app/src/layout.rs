@@ -155,7 +155,7 @@ impl Behavior<Pane> for Shown<'_> {
 }
 
 fn padded(ui: &mut Ui, add: impl FnOnce(&mut Ui)) {
-    let frame = egui::Frame::new().fill(theme::PANEL).inner_margin(egui::Margin::symmetric(10, 8));
+    let frame = egui::Frame::new().inner_margin(egui::Margin::symmetric(10, 8));
     frame.show(ui, |ui| {
         ui.set_min_size(ui.available_size());
         ScrollArea::vertical().auto_shrink(false).show(ui, add);

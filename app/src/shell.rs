@@ -68,7 +68,6 @@ impl Shell {
             .frame(bar)
             .show(ui, |ui| panels::status::ui(ui, &self.session));
         egui::CentralPanel::no_frame().show(ui, |ui| {
-            ui.painter().rect_filled(ui.max_rect(), 0.0, theme::BAR);
             self.layout.ui(ui, &mut self.session, &mut self.screen);
         });
         if !self.session.queue.is_empty() {
@@ -93,6 +92,11 @@ impl Shell {
 impl eframe::App for Shell {
     fn logic(&mut self, _: &Context, _: &mut eframe::Frame) {
         Self::logic(self);
+    }
+
+    /// Panels show this without being filled, at which devices of software are slow.
+    fn clear_color(&self, _: &egui::Visuals) -> [f32; 4] {
+        theme::PANEL.to_normalized_gamma_f32()
     }
 
     fn ui(&mut self, ui: &mut Ui, _: &mut eframe::Frame) {

@@ -16,7 +16,7 @@ pub fn ui(ui: &mut Ui, session: &Session) {
         shown.times.iter().map(|(name, time)| (name, time.as_secs_f32() * 1e3)).collect();
     ui.style_mut().override_text_style = Some(TextStyle::Small);
     let longest = stages.iter().map(|(_, ms)| *ms).fold(0.0, f32::max);
-    Grid::new("stages").num_columns(3).spacing([10.0, 0.0]).striped(true).show(ui, |ui| {
+    Grid::new("stages").num_columns(3).spacing([10.0, 0.0]).show(ui, |ui| {
         for (name, ms) in stages {
             ui.label(name);
             number(ui, format!("{ms:.2}"));

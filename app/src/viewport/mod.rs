@@ -4,6 +4,7 @@ pub mod fly;
 pub mod overlay;
 pub mod paint;
 pub mod preview;
+mod quad;
 pub mod worker;
 pub mod zoom;
 
@@ -11,13 +12,13 @@ use std::sync::Arc;
 
 use eframe::egui::{
     Align2, Color32, CursorIcon, FontId, Key, PointerButton, Rect, Response, Role, Sense, Ui,
-    WidgetInfo, pos2, vec2,
+    WidgetInfo, vec2,
 };
 use glam::DVec3;
 
 use self::fly::Flight;
 use self::overlay::Map;
-use self::paint::Screen;
+use self::paint::{Screen, WHOLE};
 use self::worker::Shown;
 use self::zoom::{Pane, Zoom};
 use crate::overlay::Overlay;
@@ -40,13 +41,13 @@ pub fn ui(ui: &mut Ui, session: &mut Session, screen: &mut Screen) {
     let rect = ui.available_rect_before_wrap();
     let response = ui.allocate_rect(rect, Sense::click_and_drag());
     response.widget_info(|| WidgetInfo::labeled(Role::Image, true, "Picture"));
-    ui.painter().rect_filled(rect, 0.0, theme::VOID);
     let Some(shown) = session.shown.clone() else {
         let text = match session.problems().next() {
             Some(_) => "Nothing can be shown; see Problems.",
             None => "Making the first picture \u{2026}",
         };
         let font = FontId::proportional(14.0);
+        ui.painter().rect_filled(rect, 0.0, theme::VOID);
         ui.painter().text(rect.center(), Align2::CENTER_CENTER, text, font, theme::WEAK);
         return;
     };
@@ -76,15 +77,12 @@ fn draw(
     clip: Rect,
 ) {
     let painter = ui.painter().with_clip_rect(clip);
-    let whole = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
     let sharp = map.rect.width() * ui.pixels_per_point() >= SHARP * map.size[0] as f32;
-    if let Some(texture) = screen.picture(ui.ctx(), shown, sharp && !session.moving) {
-        painter.image(texture, map.rect, whole, Color32::WHITE);
-    }
+    screen.picture(&painter, shown, map.rect, sharp && !session.moving);
     if session.overlays.contains(&Overlay::Instance)
         && let Some(texture) = screen.masks(ui.ctx(), shown)
     {
-        painter.image(texture, map.rect, whole, Color32::WHITE);
+        painter.image(texture, map.rect, WHOLE, Color32::WHITE);
     }
     if session.overlays.contains(&Overlay::Box2d) {
         overlay::boxes(&painter, map, &shown.annotations);

@@ -3,26 +3,29 @@
 use std::sync::Arc;
 
 use eframe::egui::{
-    Color32, ColorImage, Context, TextureFilter, TextureHandle, TextureId, TextureOptions,
+    Color32, ColorImage, Context, Painter, Rect, TextureHandle, TextureId, TextureOptions, pos2,
 };
 use eframe::egui_wgpu::RenderState;
 use figurant_core::label::Annotations;
-use wgpu::FilterMode;
 
+use super::quad::Quad;
 use super::worker::{Pixels, Shown};
 use crate::overlay::instance_color;
+use crate::theme;
 
+/// All of a texture.
+pub const WHOLE: Rect = Rect { min: pos2(0.0, 0.0), max: pos2(1.0, 1.0) };
 /// Opacity of a mask's tint.
 const TINT: u8 = 105;
 
-/// The textures of the picture in view and of the masks over it.
+/// The picture in view and the masks over it, as textures.
 #[derive(Default)]
 pub struct Screen {
-    render: Option<RenderState>,
+    quad: Option<Quad>,
     /// Kept so that its pixels stay untouched for as long as they are drawn.
     shown: Option<(Arc<Shown>, bool)>,
-    host: Option<TextureHandle>,
-    device: Option<TextureId>,
+    /// The picture where there is no device of a window.
+    plain: Option<TextureHandle>,
     masks: Option<(Arc<Shown>, TextureHandle)>,
 }
 
@@ -30,60 +33,40 @@ impl Screen {
     /// Draws by a window's device; without one only pictures in memory are drawn.
     #[must_use]
     pub fn new(render: Option<RenderState>) -> Self {
-        Self { render, ..Self::default() }
+        Self { quad: render.map(Quad::new), ..Self::default() }
     }
 
-    /// The texture of a picture; `sharp` shows its pixels as squares.
-    pub fn picture(&mut self, ctx: &Context, shown: &Arc<Shown>, sharp: bool) -> Option<TextureId> {
+    /// Fills the painter's part of the screen with a picture at a place; `sharp` shows its pixels as squares.
+    pub fn picture(&mut self, painter: &Painter, shown: &Arc<Shown>, place: Rect, sharp: bool) {
         let same =
             |(old, was_sharp): &(Arc<Shown>, bool)| Arc::ptr_eq(old, shown) && *was_sharp == sharp;
         if !self.shown.as_ref().is_some_and(same) {
-            self.upload(ctx, shown, sharp);
+            self.take(painter.ctx(), shown, sharp);
             self.shown = Some((Arc::clone(shown), sharp));
         }
-        match &shown.pixels {
-            Pixels::Host(_) => self.host.as_ref().map(TextureHandle::id),
-            Pixels::Device(_) => self.device,
+        match (&self.quad, &self.plain) {
+            (Some(quad), _) => {
+                if let Some(callback) = quad.callback(place, painter.clip_rect()) {
+                    painter.add(callback);
+                }
+            }
+            (None, Some(texture)) => {
+                painter.rect_filled(painter.clip_rect(), 0.0, theme::VOID);
+                painter.image(texture.id(), place, WHOLE, Color32::WHITE);
+            }
+            (None, None) => {}
         }
     }
 
-    fn upload(&mut self, ctx: &Context, shown: &Shown, sharp: bool) {
-        match &shown.pixels {
-            Pixels::Host(image) => {
-                let magnification =
-                    if sharp { TextureFilter::Nearest } else { TextureFilter::Linear };
-                let options = TextureOptions { magnification, ..TextureOptions::LINEAR };
-                match &mut self.host {
-                    Some(texture) => texture.set(Arc::clone(image), options),
-                    None => {
-                        let texture = ctx.load_texture("picture", Arc::clone(image), options);
-                        self.host = Some(texture);
-                    }
-                }
+    fn take(&mut self, ctx: &Context, shown: &Shown, sharp: bool) {
+        match (&shown.pixels, &mut self.quad) {
+            (Pixels::Device(picture), Some(quad)) => quad.show(&picture.texture, sharp),
+            (Pixels::Host(image), Some(quad)) => quad.upload(image, sharp),
+            (Pixels::Host(image), None) => {
+                let options = if sharp { TextureOptions::NEAREST } else { TextureOptions::LINEAR };
+                self.plain = Some(ctx.load_texture("picture", Arc::clone(image), options));
             }
-            Pixels::Device(picture) => {
-                let Some(RenderState { device, renderer, .. }) = &self.render else { return };
-                let view = picture.texture.create_view(&wgpu::TextureViewDescriptor::default());
-                let sampler = wgpu::SamplerDescriptor {
-                    label: Some("picture"),
-                    mag_filter: if sharp { FilterMode::Nearest } else { FilterMode::Linear },
-                    min_filter: FilterMode::Linear,
-                    ..wgpu::SamplerDescriptor::default()
-                };
-                let mut renderer = renderer.write();
-                match self.device {
-                    Some(id) => renderer
-                        .update_egui_texture_from_wgpu_texture_with_sampler_options(
-                            device, &view, sampler, id,
-                        ),
-                    None => {
-                        self.device =
-                            Some(renderer.register_native_texture_with_sampler_options(
-                                device, &view, sampler,
-                            ));
-                    }
-                }
-            }
+            (Pixels::Device(_), None) => {}
         }
     }
 
