@@ -105,6 +105,12 @@ def check(args):
         blank = screenshot(env)
         drawn = lambda: (lambda s: s if len(np.unique(s.reshape(-1, 3), axis=0)) > 8 else None)(screenshot(env))
         _, opened_s = wait_for("the window", drawn, window, 0.02)
+        found = subprocess.run(
+            ["xdotool", "search", "--onlyvisible", "--name", "Figurant"], env=env, stdout=subprocess.PIPE, check=True
+        )
+        ident = found.stdout.decode().split()[0]
+        # There is no window manager that would give it the keys.
+        subprocess.run(["xdotool", "windowfocus", ident], env=env, check=True)
 
         def shows(picture):
             shot = screenshot(env)
@@ -132,12 +138,8 @@ def check(args):
         print(f"window: {share:.2%} of a processor at rest")
         assert colours > 5000, "the window is all but empty"
         assert share < IDLE_SHARE, f"a window at rest takes {share:.1%} of a processor"
-        found = subprocess.run(
-            ["xdotool", "search", "--onlyvisible", "--name", "Figurant"], env=env, stdout=subprocess.PIPE, check=True
-        )
-        ident = found.stdout.decode().split()[0]
         key("space")
-        subprocess.run(["xdotool", "windowquit", ident], env=env, check=True)
+        key("ctrl+q")
         status = window.wait(timeout=PATIENCE_S)
         assert status == 0, f"a window that was closed ended with {status}"
     finally:

@@ -27,11 +27,13 @@ pub enum Command {
     Fit,
     /// One pixel of the picture to one of the screen.
     ActualSize,
+    /// The end.
+    Quit,
 }
 
 impl Command {
     /// All of them; one whose keys hold another's stands before it.
-    pub const ALL: [Self; 11] = [
+    pub const ALL: [Self; 12] = [
         Self::PreviousFrame,
         Self::NextFrame,
         Self::Reload,
@@ -43,6 +45,7 @@ impl Command {
         Self::Masks,
         Self::Fit,
         Self::ActualSize,
+        Self::Quit,
     ];
 
     /// What stands on its button.
@@ -60,6 +63,7 @@ impl Command {
             Self::Masks => "Masks",
             Self::Fit => "Fit",
             Self::ActualSize => "100 %",
+            Self::Quit => "Quit",
         }
     }
 
@@ -82,6 +86,7 @@ impl Command {
             Self::Masks => "Tints the pixels of each person.",
             Self::Fit => "Shows the whole picture.",
             Self::ActualSize => "Shows one pixel of the picture as one pixel of the screen.",
+            Self::Quit => "Closes the window.",
         }
     }
 
@@ -100,6 +105,7 @@ impl Command {
             Self::Masks => (Modifiers::NONE, Key::M),
             Self::Fit => (Modifiers::NONE, Key::F),
             Self::ActualSize => (Modifiers::NONE, Key::Num1),
+            Self::Quit => (Modifiers::COMMAND, Key::Q),
         };
         KeyboardShortcut::new(modifiers, key)
     }

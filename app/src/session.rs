@@ -269,6 +269,8 @@ impl Session {
             Command::Masks => self.toggle(Overlay::Instance),
             Command::Fit => self.zoom = Zoom::Fit,
             Command::ActualSize => self.wants_actual_size = true,
+            // The shell has seen it.
+            Command::Quit => {}
         }
     }
 

@@ -70,6 +70,9 @@ impl Shell {
         egui::CentralPanel::no_frame().show(ui, |ui| {
             self.layout.ui(ui, &mut self.session, &mut self.screen);
         });
+        if self.session.queue.contains(&Command::Quit) {
+            ui.ctx().send_viewport_cmd(egui::ViewportCommand::Close);
+        }
         if !self.session.queue.is_empty() {
             ui.ctx().request_repaint();
         }

@@ -68,7 +68,6 @@ fn visuals() -> Visuals {
     visuals.selection = Selection {
         bg_fill: Color32::from_rgb(92, 68, 36),
         stroke: Stroke::new(1.0, Color32::from_rgb(255, 224, 184)),
-        ..visuals.selection
     };
     let widgets = &mut visuals.widgets;
     widgets.noninteractive = widget(PANEL, LINE, TEXT);

@@ -15,6 +15,7 @@ pub fn ui(ui: &mut Ui, session: &Session) {
     let stages: Vec<(&str, f32)> =
         shown.times.iter().map(|(name, time)| (name, time.as_secs_f32() * 1e3)).collect();
     ui.style_mut().override_text_style = Some(TextStyle::Small);
+    ui.spacing_mut().interact_size.y = 14.0;
     let longest = stages.iter().map(|(_, ms)| *ms).fold(0.0, f32::max);
     Grid::new("stages").num_columns(3).spacing([10.0, 0.0]).show(ui, |ui| {
         for (name, ms) in stages {
