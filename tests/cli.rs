@@ -195,6 +195,13 @@ impl Road for Atelier {
         Ok(Painter { width: info.width, height: info.height, seed: info.seed, fails })
     }
 
+    fn window(&self, config: Option<&Path>) -> Result<(), String> {
+        match config {
+            Some(_) => Ok(()),
+            None => Err("the wall is bricked up".to_owned()),
+        }
+    }
+
     fn engine(&self, simd: Simd) -> String {
         format!("brush ({simd:?})")
     }
@@ -515,14 +522,19 @@ fn data_goes_to_stdout_alone() {
 }
 
 #[test]
-fn without_a_command_it_says_that_there_is_no_editor_yet() {
+fn without_a_command_a_window_opens_or_it_says_why_not() {
     let desk = desk();
-    for line in ["", "@c.json"] {
-        let ran = desk.run(line);
-        assert_eq!((ran.exit.code(), ran.out.as_str()), (2, ""), "{line}");
-        assert!(ran.err.contains("the editor is not part of this version yet"), "{}", ran.err);
-        assert!(ran.err.contains("export"), "{}", ran.err);
+    let ran = desk.run("@c.json");
+    assert_eq!((ran.exit, ran.out.as_str(), ran.err.as_str()), (Exit::Done, "", ""));
+    let ran = desk.run("");
+    assert_eq!((ran.exit, ran.exit.code(), ran.out.as_str()), (Exit::NoWindow, 3, ""));
+    for part in ["no window can be opened: the wall is bricked up", "export", "frame"] {
+        assert!(ran.err.contains(part), "{}", ran.err);
     }
+    // Most likely a command that is misspelt.
+    let ran = desk.run("exprot");
+    assert_eq!((ran.exit, ran.out.as_str()), (Exit::BadInput, ""));
+    assert!(ran.err.contains("exprot: there is no such file"), "{}", ran.err);
 }
 
 #[test]
@@ -536,6 +548,7 @@ fn the_doctor_reports_on_everything() {
         "3 colours",
         "32 x 24 pixels with 1 people",
         "easel (wood)",
+        "window      ",
     ] {
         assert!(ran.out.contains(part), "{part} in\n{}", ran.out);
     }

@@ -140,6 +140,39 @@ fn engines_share_no_code() {
     }
 }
 
+/// What only some files may name, and the folders and files of the program that may.
+const WINDOWS: &[&str] = &[
+    "command.rs",
+    "launch.rs",
+    "layout.rs",
+    "panels",
+    "session.rs",
+    "shell.rs",
+    "theme.rs",
+    "viewport",
+];
+
+#[test]
+fn windows_and_graphics_stay_where_they_belong() {
+    let mut core = Vec::new();
+    rust_files(&core_src(), &mut core);
+    for file in core {
+        let code = code_of(&file);
+        assert!(!code.contains("egui") && !code.contains("eframe"), "{} draws", file.display());
+        let graphics = file.starts_with(core_src().join("engine/gpu"));
+        assert!(graphics || !code.contains("wgpu::"), "{} sees wgpu", file.display());
+    }
+    let app = Path::new(env!("CARGO_MANIFEST_DIR")).join("../app/src");
+    let mut files = Vec::new();
+    rust_files(&app, &mut files);
+    for file in files {
+        let of_window = WINDOWS.iter().any(|name| file.starts_with(app.join(name)));
+        let code = code_of(&file);
+        let draws = ["egui", "eframe", "wgpu::"].iter().any(|name| code.contains(name));
+        assert!(of_window || !draws, "{} needs the feature gui", file.display());
+    }
+}
+
 #[test]
 fn the_reader_of_imports_sees_groups_and_paths() {
     let code =

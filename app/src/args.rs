@@ -14,14 +14,14 @@ use crate::report::Style;
 use crate::road::{EngineKind, EngineWish, Simd};
 
 const AFTER_HELP: &str = "Exit status: 0 done, 1 some frames failed (listed in report.json), \
-    2 wrong arguments, config or disk, 3 no usable engine, 130 interrupted. \
+    2 wrong arguments, config or disk, 3 no usable engine or window, 130 interrupted. \
     Standard output carries data only.";
 
 /// Labelled pictures of people who do not exist.
 #[derive(Debug, Parser)]
 #[command(name = "figurant", version, after_help = AFTER_HELP)]
 pub struct Args {
-    /// A config to open in the editor, which is not part of this version yet.
+    /// A config to look at in a window; without one the starter preset.
     pub config: Option<PathBuf>,
     #[command(subcommand)]
     pub command: Option<Command>,

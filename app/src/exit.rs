@@ -13,6 +13,8 @@ pub enum Exit {
     BadInput,
     /// Nothing here can render.
     NoEngine,
+    /// No window can be opened here.
+    NoWindow,
     /// Stopped from outside.
     Interrupted,
 }
@@ -25,7 +27,7 @@ impl Exit {
             Self::Done => 0,
             Self::SomeFailed => 1,
             Self::BadInput => 2,
-            Self::NoEngine => 3,
+            Self::NoEngine | Self::NoWindow => 3,
             Self::Interrupted => 130,
         }
     }

@@ -9,14 +9,30 @@ use clap::Parser;
 use clap::error::ErrorKind;
 
 mod args;
+#[cfg(feature = "gui")]
+pub mod command;
 mod commands;
 mod console;
 mod exit;
+#[cfg(feature = "gui")]
+mod launch;
+#[cfg(feature = "gui")]
+mod layout;
 pub mod overlay;
+#[cfg(feature = "gui")]
+mod panels;
 mod process;
 mod report;
 pub mod road;
+#[cfg(feature = "gui")]
+pub mod session;
+#[cfg(feature = "gui")]
+pub mod shell;
 pub mod studio;
+#[cfg(feature = "gui")]
+mod theme;
+#[cfg(feature = "gui")]
+pub mod viewport;
 
 pub use console::Console;
 pub use exit::{Exit, Failure};
@@ -36,7 +52,7 @@ pub fn run<R: Road>(
         Err(e) => return not_parsed(&e, console),
     };
     let ended = match parsed.command {
-        None => commands::no_editor(parsed.config.as_deref(), console),
+        None => commands::window::run(road, parsed.config.as_deref()),
         Some(args::Command::Export(args)) => commands::export::run(road, &args, console, stop),
         Some(args::Command::Frame(args)) => commands::frame::run(road, &args, console),
         Some(args::Command::Gallery(args)) => commands::gallery::run(road, &args, console),

@@ -48,7 +48,7 @@ pub struct WrongSize {
     height: u32,
 }
 
-type Rgb = [u8; 3];
+pub(crate) type Rgb = [u8; 3];
 
 const DARK: Rgb = [16, 16, 20];
 const LEFT: Rgb = [64, 160, 255];
@@ -91,7 +91,7 @@ pub fn draw(
 }
 
 /// The colour of an instance: neighbours in number are far apart in hue.
-fn instance_color(instance: u16) -> Rgb {
+pub(crate) fn instance_color(instance: u16) -> Rgb {
     // Multiples of the golden ratio's fraction never come close to each other for long.
     let hue = (f32::from(instance) * 0.618_034).fract() * 6.0;
     let channel = |shift: f32| {
@@ -222,7 +222,7 @@ fn nominal_size(points: &[Keypoint]) -> f32 {
     ((high - low) / 160.0).clamp(0.45, 1.5)
 }
 
-fn side_color(keypoint: usize) -> Rgb {
+pub(crate) fn side_color(keypoint: usize) -> Rgb {
     match KEYPOINT_NAMES[keypoint].split_once('_') {
         Some(("left", _)) => LEFT,
         Some(("right", _)) => RIGHT,
@@ -231,7 +231,7 @@ fn side_color(keypoint: usize) -> Rgb {
 }
 
 /// The side of a limb; from the nose to an eye it is the eye's.
-fn limb_color(a: usize, b: usize) -> Rgb {
+pub(crate) fn limb_color(a: usize, b: usize) -> Rgb {
     match (side_color(a), side_color(b)) {
         (MIDDLE, side) | (side, MIDDLE) => side,
         (one, other) if one == other => one,

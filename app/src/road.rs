@@ -141,6 +141,13 @@ pub trait Road: Sync {
         threads: NonZeroUsize,
     ) -> Result<Self::Maker, <Self::Maker as FrameMaker>::Error>;
 
+    /// Shows a config, or one that ships with the program, in a window until that is closed. What is
+    /// wrong with the config is said there.
+    ///
+    /// # Errors
+    /// Why no window can be opened here, and what to do.
+    fn window(&self, config: Option<&Path>) -> Result<(), String>;
+
     /// The engine and the code path that a maker would use here, for people to read.
     fn engine(&self, simd: Simd) -> String;
 

@@ -17,6 +17,7 @@ use figurant_core::export::{AssetLicence, DatasetInfo, PictureFormat};
 use figurant_core::job::{FrameError, Studio, catalogue};
 use figurant_core::library::textures::TextureGroup;
 use figurant_core::library::{Library, NO_LICENCE};
+use figurant_core::plan::Outputs;
 use figurant_core::sampling::Sampler;
 
 use crate::road::{Adapter, EngineKind, EngineWish, Job, LoadError, Road, Simd, Wishes};
@@ -31,6 +32,56 @@ pub struct Loaded {
     document: Arc<Document>,
     library: Arc<Library>,
     cast: Arc<Cast>,
+}
+
+impl Loaded {
+    /// The document, as it was loaded.
+    #[must_use]
+    pub fn document(&self) -> &Document {
+        &self.document
+    }
+
+    /// The document with another seed, picture size (pixels) and outputs.
+    #[must_use]
+    pub fn changed(&self, seed: u64, size: [u32; 2], outputs: &Outputs) -> Arc<Document> {
+        let mut document = Document::clone(&self.document);
+        let wishes = Wishes {
+            seed: Some(seed),
+            size: Some(size),
+            outputs: Some(outputs.clone()),
+            ..Wishes::default()
+        };
+        apply(&wishes, &mut document);
+        Arc::new(document)
+    }
+
+    /// A studio for such a document, which must not name other assets.
+    ///
+    /// # Errors
+    /// When the system gives no threads.
+    pub fn studio(
+        &self,
+        document: Arc<Document>,
+        engine: Box<dyn Engine>,
+        threads: NonZeroUsize,
+    ) -> Result<Studio, FrameError> {
+        let (library, cast) = (Arc::clone(&self.library), Arc::clone(&self.cast));
+        Studio::new(document, library, cast, engine, threads)
+    }
+
+    /// Gives such a document to a studio that had another.
+    ///
+    /// # Errors
+    /// When the document makes no sense; the studio keeps what it had.
+    pub fn direct(&self, studio: &mut Studio, document: Arc<Document>) -> Result<(), FrameError> {
+        studio.direct(document, Arc::clone(&self.library), Arc::clone(&self.cast))
+    }
+
+    /// Whether both were loaded at once.
+    #[must_use]
+    pub fn is(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.document, &other.document)
+    }
 }
 
 impl Road for Native {
@@ -82,6 +133,16 @@ impl Road for Native {
         let Loaded { document, library, cast } = &job.document;
         let (document, library) = (Arc::clone(document), Arc::clone(library));
         Studio::new(document, library, Arc::clone(cast), engine(job)?, threads)
+    }
+
+    fn window(&self, config: Option<&Path>) -> Result<(), String> {
+        #[cfg(feature = "gui")]
+        return crate::launch::open(config.map(Path::to_owned));
+        #[cfg(not(feature = "gui"))]
+        {
+            let _ = config;
+            Err("this program was built without one; build it with --features gui".to_owned())
+        }
     }
 
     fn engine(&self, simd: Simd) -> String {

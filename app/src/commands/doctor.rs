@@ -47,6 +47,7 @@ pub fn run<R: Road>(
         Err(text) => page.bad("test frame", text),
     }
     graphics(road, args, &mut page);
+    page.good("window", window().to_owned());
     console.data(page.text.as_bytes())?;
     Ok(if page.usable { Exit::Done } else { Exit::NoEngine })
 }
@@ -74,6 +75,18 @@ fn graphics<R: Road>(road: &R, args: &DoctorArgs, page: &mut Page) {
             Ok(text) => page.good("test frame", text),
             Err(text) => page.warn("test frame", text),
         }
+    }
+}
+
+/// Whether there is anything to open a window on. None is needed.
+fn window() -> &'static str {
+    let screens = ["DISPLAY", "WAYLAND_DISPLAY", "WAYLAND_SOCKET"];
+    if !cfg!(feature = "gui") {
+        "not built in"
+    } else if cfg!(target_os = "linux") && screens.iter().all(|n| std::env::var_os(n).is_none()) {
+        "this session has no screen to open one on; nothing else needs one"
+    } else {
+        "this session has a screen; `figurant CONFIG.json` opens one"
     }
 }
 

@@ -3,11 +3,9 @@
 use std::num::NonZeroUsize;
 use std::path::Path;
 
-use clap::CommandFactory;
-
-use crate::args::{Args, Changes};
+use crate::args::Changes;
 use crate::road::{LoadError, Wishes};
-use crate::{Console, Exit, Failure};
+use crate::{Exit, Failure};
 
 pub mod doctor;
 pub mod export;
@@ -16,21 +14,7 @@ pub mod gallery;
 pub mod people;
 pub mod schema;
 pub mod validate;
-
-/// Without a command the editor would open, which this version does not have.
-pub fn no_editor(config: Option<&Path>, console: &mut Console<'_>) -> Result<Exit, Failure> {
-    console.note(&Args::command().render_help().to_string());
-    Err(Failure::input(match config {
-        Some(config) => format!(
-            "the editor is not part of this version yet, so {0} cannot be opened; \
-             to write a data set: figurant export {0} --out DIR",
-            config.display()
-        ),
-        None => {
-            "the editor is not part of this version yet; give one of the commands above".to_owned()
-        }
-    }))
-}
+pub mod window;
 
 impl From<&Changes> for Wishes {
     fn from(changes: &Changes) -> Self {

@@ -6,6 +6,8 @@
 use std::num::NonZeroUsize;
 use std::sync::Arc;
 
+use glam::{DQuat, DVec3};
+
 use super::{FrameMaker, RenderedFrame};
 use crate::document::{Document, Problem};
 use crate::draw::{self, Cast, DrawError, DrawOptions, Drawn};
@@ -13,9 +15,9 @@ use crate::engine::{Engine, EngineError};
 use crate::label;
 use crate::library::Library;
 use crate::library::textures::TextureGroup;
-use crate::plan::{Frame, Outputs, Pass, PassPlan, SceneFacts, StageTimes};
+use crate::plan::{Delivery, Frame, Outputs, Pass, PassPlan, SceneFacts, StageTimes};
 use crate::sampling::{self, Activity, Catalogue, SampleError, Sampler};
-use crate::scene::Scene;
+use crate::scene::{Camera, Scene};
 
 /// A frame that cannot be made.
 #[derive(Debug, thiserror::Error)]
@@ -44,6 +46,35 @@ pub enum FrameError {
 pub struct ThreadError {
     threads: NonZeroUsize,
     source: rayon::ThreadPoolBuildError,
+}
+
+/// What is asked of a frame beside its document: which one, seen from where, delivered how.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct View {
+    /// Number of the frame.
+    pub frame: u32,
+    /// Seen from elsewhere than where the document's camera stands; the rest of the scene stays.
+    pub viewpoint: Option<Viewpoint>,
+    /// Where the picture is wanted.
+    pub delivery: Delivery,
+}
+
+/// Another place for a scene's camera; the picture's size and the near plane stay.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Viewpoint {
+    /// Metres, world.
+    pub position_m: DVec3,
+    /// World from view, a unit quaternion; at identity it looks down -Z with +Y up.
+    pub rotation: DQuat,
+    /// Angle between the rays through the middle of the top and bottom edge, degrees.
+    pub fov_vertical_deg: f64,
+}
+
+impl From<&Camera> for Viewpoint {
+    fn from(camera: &Camera) -> Self {
+        let Camera { position_m, rotation, fov_vertical_deg, .. } = *camera;
+        Self { position_m, rotation, fov_vertical_deg }
+    }
 }
 
 /// A document, what it draws from and what renders it.
@@ -79,6 +110,29 @@ impl Studio {
         Ok(Self { sampler, library, cast, outputs, engine, threads })
     }
 
+    /// Another document for the same engine and its threads.
+    ///
+    /// # Errors
+    /// When it makes no sense or names assets that are not there; the studio keeps what it had.
+    pub fn direct(
+        &mut self,
+        document: Arc<Document>,
+        library: Arc<Library>,
+        cast: Arc<Cast>,
+    ) -> Result<(), FrameError> {
+        let outputs = document.output.outputs.clone();
+        self.sampler = Sampler::new(document, catalogue(&library))?;
+        (self.library, self.cast, self.outputs) = (library, cast, outputs);
+        Ok(())
+    }
+
+    /// The passes that a scene takes.
+    #[must_use]
+    pub fn plan(&self, scene: &Scene) -> PassPlan {
+        let sun_shadow = scene.lights.sun.as_ref().is_some_and(|s| s.shadow);
+        PassPlan::new(&self.outputs, SceneFacts { sun_shadow })
+    }
+
     /// What a document names that the library does not hold.
     #[must_use]
     pub fn check_assets(document: &Document, library: &Library) -> Vec<Problem> {
@@ -94,8 +148,15 @@ impl Studio {
         scene: &Scene,
         times: &mut StageTimes,
     ) -> Result<(Drawn, Frame), FrameError> {
-        let sun_shadow = scene.lights.sun.as_ref().is_some_and(|s| s.shadow);
-        let plan = PassPlan::new(&self.outputs, SceneFacts { sun_shadow });
+        self.render(scene, &self.plan(scene), times)
+    }
+
+    fn render(
+        &mut self,
+        scene: &Scene,
+        plan: &PassPlan,
+        times: &mut StageTimes,
+    ) -> Result<(Drawn, Frame), FrameError> {
         let document = self.sampler.document();
         let options = DrawOptions {
             raster: plan.needs_engine(),
@@ -108,12 +169,32 @@ impl Studio {
         self.threads.install(|| {
             let drawn = times.measure("draw", || draw::draw(scene, library, cast, &options))?;
             let frame = if plan.needs_engine() {
-                engine.render(&drawn.list, &plan, times)?
+                engine.render(&drawn.list, plan, times)?
             } else {
                 Frame { width: scene.camera.width, height: scene.camera.height, ..Frame::default() }
             };
             Ok((drawn, frame))
         })
+    }
+
+    /// Samples a frame, renders it as the view asks and labels it. The picture is absent if it was
+    /// not asked for, or was left on the engine's device.
+    ///
+    /// # Errors
+    /// When the scene cannot be drawn, or the engine refuses it.
+    pub fn make_view(&mut self, view: &View) -> Result<RenderedFrame, FrameError> {
+        let mut times = StageTimes::default();
+        let mut scene = times.measure("sample", || self.sampler.scene(view.frame));
+        if let Some(Viewpoint { position_m, rotation, fov_vertical_deg }) = view.viewpoint {
+            scene.camera = Camera { position_m, rotation, fov_vertical_deg, ..scene.camera };
+        }
+        let plan = self.plan(&scene).delivered(view.delivery);
+        let (drawn, mut rendered) = self.render(&scene, &plan, &mut times)?;
+        let annotations =
+            times.measure("label", || label::annotate(&scene, &drawn, &rendered, &self.outputs));
+        let picture = rendered.picture.take();
+        self.engine.recycle(rendered);
+        Ok(RenderedFrame { scene, picture, annotations, times })
     }
 }
 
@@ -137,13 +218,6 @@ impl FrameMaker for Studio {
 
     /// Samples a frame, renders it and labels it.
     fn make(&mut self, frame: u32) -> Result<RenderedFrame, FrameError> {
-        let mut times = StageTimes::default();
-        let scene = times.measure("sample", || self.sampler.scene(frame));
-        let (drawn, mut rendered) = self.render_scene(&scene, &mut times)?;
-        let annotations =
-            times.measure("label", || label::annotate(&scene, &drawn, &rendered, &self.outputs));
-        let picture = rendered.picture.take();
-        self.engine.recycle(rendered);
-        Ok(RenderedFrame { scene, picture, annotations, times })
+        self.make_view(&View { frame, ..View::default() })
     }
 }

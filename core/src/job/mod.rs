@@ -9,5 +9,5 @@ mod maker;
 pub mod progress;
 pub mod ranges;
 
-pub use frame::{FrameError, Studio, catalogue};
+pub use frame::{FrameError, Studio, View, Viewpoint, catalogue};
 pub use maker::{FrameMaker, RenderedFrame};

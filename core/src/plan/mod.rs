@@ -12,4 +12,4 @@ mod walk;
 pub use frame::{Frame, ObjectSamples, StageTimes};
 pub use output::{Output, Outputs};
 pub use pass::{Buffer, Pass};
-pub use walk::{PassPlan, SceneFacts, Skipped};
+pub use walk::{Delivery, PassPlan, SceneFacts, Skipped};

@@ -20,11 +20,23 @@ pub enum Skipped {
     NoSunShadow,
 }
 
+/// Where the picture is wanted. Labels are always read back.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Delivery {
+    /// In the frame that the engine hands back.
+    #[default]
+    Readback,
+    /// On the device that renders, where somebody shows it; in the frame if the engine has no
+    /// device that anybody could show it on.
+    Texture,
+}
+
 /// The passes that run, in order, and why the others do not.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct PassPlan {
     passes: Vec<Pass>,
     skipped: Vec<(Pass, Skipped)>,
+    delivery: Delivery,
 }
 
 impl PassPlan {
@@ -46,7 +58,20 @@ impl PassPlan {
         }
         passes.reverse();
         skipped.reverse();
-        Self { passes, skipped }
+        Self { passes, skipped, delivery: Delivery::Readback }
+    }
+
+    /// The same plan with its picture wanted elsewhere.
+    #[must_use]
+    pub const fn delivered(mut self, delivery: Delivery) -> Self {
+        self.delivery = delivery;
+        self
+    }
+
+    /// Where the picture is wanted.
+    #[must_use]
+    pub const fn delivery(&self) -> Delivery {
+        self.delivery
     }
 
     /// The passes that run, in execution order.

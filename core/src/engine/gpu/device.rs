@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, PoisonError};
 
 use super::adapter::{self, GpuError, GpuOptions};
+use super::present::GpuContext;
 use super::stage::{Access, Stage};
 use crate::engine::EngineError;
 
@@ -33,22 +34,27 @@ impl Device {
         let instance = adapter::instance();
         let adapter = adapter::choose(&instance, options)?;
         let name = adapter.get_info().name;
-        let limits =
-            if options.minimum_limits { wgpu::Limits::defaults() } else { adapter.limits() };
-        let timed = adapter.features().contains(wgpu::Features::TIMESTAMP_QUERY);
-        let features =
-            if timed { wgpu::Features::TIMESTAMP_QUERY } else { wgpu::Features::empty() };
-        let (device, queue) = adapter::block_on(adapter.request_device(&wgpu::DeviceDescriptor {
-            label: Some("figurant"),
-            required_features: features,
-            required_limits: limits,
-            ..Default::default()
-        }))
-        .map_err(|e| GpuError::Refused { adapter: name.clone(), reason: e.to_string() })?;
+        let mut wanted = GpuContext::descriptor(&adapter);
+        if options.minimum_limits {
+            wanted.required_limits = wgpu::Limits::defaults();
+        }
+        let (device, queue) = adapter::block_on(adapter.request_device(&wanted))
+            .map_err(|e| GpuError::Refused { adapter: name.clone(), reason: e.to_string() })?;
+        Ok(Self::watched(name, device, queue))
+    }
+
+    /// A device that somebody else opened.
+    pub fn given(context: GpuContext) -> Self {
+        Self::watched(context.name, context.device, context.queue)
+    }
+
+    /// An open device, whose faults are written down from now on.
+    fn watched(name: String, device: wgpu::Device, queue: wgpu::Queue) -> Self {
         let faults = Arc::new(Mutex::new(Faults::default()));
         watch(&device, &faults);
         let limits = device.limits();
-        Ok(Self { name, device, queue, limits, timed, faults, pipelines: BTreeMap::new() })
+        let timed = device.features().contains(wgpu::Features::TIMESTAMP_QUERY);
+        Self { name, device, queue, limits, timed, faults, pipelines: BTreeMap::new() }
     }
 
     /// Whether the device went away.

@@ -24,12 +24,14 @@ mod buffers;
 mod device;
 mod pack;
 mod pool;
+mod present;
 mod probe;
 mod readback;
 mod record;
 mod stage;
 
 pub use adapter::{AdapterReport, GpuError, GpuOptions, adapters, choice};
+pub use present::{GpuContext, GpuPicture, GpuPictures};
 pub use probe::PlacedVertex;
 
 use std::sync::Arc;
@@ -40,6 +42,7 @@ use self::buffers::Buffers;
 use self::device::Device;
 use self::pack::{Packed, Wanted};
 use self::pool::Pool;
+use self::present::Presenter;
 use self::readback::{Band, Counted, Readback};
 use self::record::{Clock, Recorder};
 use self::stage::{Resource, Stage};
@@ -47,7 +50,7 @@ use super::{Engine, EngineError, input};
 use crate::draw::DrawList;
 use crate::library::mesh::Mesh;
 use crate::library::texture::Texture;
-use crate::plan::{Frame, ObjectSamples, Pass, PassPlan, StageTimes};
+use crate::plan::{Delivery, Frame, ObjectSamples, Pass, PassPlan, StageTimes};
 
 /// How often a frame is tried anew with more room for triangles: what is needed is known after
 /// the first try, but for the sun's map, of which it is known after the second.
@@ -55,7 +58,8 @@ const TRIES: usize = 4;
 
 /// Renders draw lists on a graphics device. Keeps its buffers from frame to frame.
 pub struct GpuEngine {
-    options: GpuOptions,
+    /// How its device is opened; nothing if somebody else opened it.
+    options: Option<GpuOptions>,
     state: State,
 }
 
@@ -66,7 +70,16 @@ impl GpuEngine {
     /// When there is none, or it gives no device.
     pub fn new(options: GpuOptions) -> Result<Self, GpuError> {
         let state = State::open(&options)?;
-        Ok(Self { options, state })
+        Ok(Self { options: Some(options), state })
+    }
+
+    /// Renders on a device that somebody else opened. Pictures that are wanted as textures are left
+    /// in what is handed back beside the engine.
+    #[must_use]
+    pub fn on(context: GpuContext) -> (Self, GpuPictures) {
+        let mut state = State::new(Device::given(context));
+        let pictures = state.present.insert(Presenter::new(&state.device)).pictures.clone();
+        (Self { options: None, state }, pictures)
     }
 
     /// The name of the adapter in use.
@@ -82,12 +95,12 @@ impl GpuEngine {
 
     /// Opens the device again, with nothing on it.
     fn reopen(&mut self, lost: EngineError) -> Result<(), EngineError> {
-        match State::open(&self.options) {
-            Ok(state) => {
+        match self.options.as_ref().map(State::open) {
+            Some(Ok(state)) => {
                 self.state = state;
                 Ok(())
             }
-            Err(_) => Err(lost),
+            _ => Err(lost),
         }
     }
 }
@@ -122,6 +135,7 @@ struct State {
     textures: Pool<Texture>,
     packed: Packed,
     readback: Readback,
+    present: Option<Presenter>,
     clock: Option<Clock>,
     room: Room,
 }
@@ -153,8 +167,11 @@ impl Room {
 
 impl State {
     fn open(options: &GpuOptions) -> Result<Self, GpuError> {
-        let device = Device::open(options)?;
-        Ok(Self {
+        Ok(Self::new(Device::open(options)?))
+    }
+
+    fn new(device: Device) -> Self {
+        Self {
             clock: device.timed.then(|| Clock::new(&device)),
             device,
             buffers: Buffers::default(),
@@ -162,8 +179,9 @@ impl State {
             textures: Pool::new("graphics memory of textures"),
             packed: Packed::default(),
             readback: Readback::default(),
+            present: None,
             room: Room::default(),
-        })
+        }
     }
 
     fn render(
@@ -179,7 +197,9 @@ impl State {
         }
         let pixels = width as usize * height as usize;
         let (resolves, reduces) = (plan.runs(Pass::Resolve), plan.runs(Pass::Reduce));
-        frame.picture = plan.runs(Pass::Display).then(|| vec![0; pixels * 3]);
+        let plan = &self.deliver(plan, [width, height])?;
+        let read_back = plan.runs(Pass::Display) && plan.delivery() == Delivery::Readback;
+        frame.picture = read_back.then(|| vec![0; pixels * 3]);
         frame.object_ids = resolves.then(|| vec![0; pixels]);
         frame.depth_m = resolves.then(|| vec![0.0; pixels]);
         frame.object_samples = reduces.then(|| vec![ObjectSamples::default(); list.objects.len()]);
@@ -188,11 +208,23 @@ impl State {
         times.measure("upload", || self.upload(list, plan, shadow))?;
         for _ in 0..TRIES {
             if self.bands(list, plan, shadow, &mut frame, times)? {
+                if let Some(present) = &mut self.present {
+                    present.finish();
+                }
                 return Ok(frame);
             }
         }
         let (what, got) = ("number of triangles by tile", self.room.entries);
         Err(EngineError::TooLarge { what, got, limit: self.device.largest_buffer() / 4 })
+    }
+
+    /// The plan as it can be carried out: where nobody shows pictures they are read back.
+    fn deliver(&mut self, plan: &PassPlan, size: [u32; 2]) -> Result<PassPlan, EngineError> {
+        let shown = plan.runs(Pass::Display) && plan.delivery() == Delivery::Texture;
+        match self.present.as_mut().filter(|_| shown) {
+            Some(present) => present.begin(&self.device, size).map(|()| plan.clone()),
+            None => Ok(plan.clone().delivered(Delivery::Readback)),
+        }
     }
 
     /// Brings meshes and textures to the device and packs the rest of the draw list.
@@ -376,6 +408,11 @@ impl State {
         recorder.visibility();
         recorder.outputs(plan);
         recorder.finish();
+        if let Some(present) =
+            self.present.as_ref().filter(|_| plan.delivery() == Delivery::Texture)
+        {
+            present.record(&self.device, &mut encoder, &self.buffers, band.rows);
+        }
         let timings = self.clock.as_ref().map(|c| &c.resolved);
         let what = (plan, list.view.width, list.objects.len());
         self.readback.record(&self.device, &mut encoder, &self.buffers, what, band, timings)?;

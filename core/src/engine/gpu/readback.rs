@@ -5,7 +5,7 @@ use super::buffers::Buffers;
 use super::device::Device;
 use super::stage::Resource;
 use crate::engine::EngineError;
-use crate::plan::{Frame, ObjectSamples, Pass, PassPlan};
+use crate::plan::{Delivery, Frame, ObjectSamples, Pass, PassPlan};
 
 /// What is copied back of a band, one thing behind the other.
 #[derive(Default)]
@@ -40,7 +40,7 @@ impl Readback {
         let pixels = u64::from(width) * u64::from(band.rows);
         let counters = size_of::<Counters>() as u64;
         let mut wishes = vec![(Resource::Counters, counters), (Resource::SunCounters, counters)];
-        if plan.runs(Pass::Display) {
+        if plan.runs(Pass::Display) && plan.delivery() == Delivery::Readback {
             wishes.push((Resource::Picture, pixels * 4));
         }
         if plan.runs(Pass::Resolve) {
