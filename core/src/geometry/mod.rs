@@ -9,6 +9,7 @@
 //! | [`body`] | joints, keypoints, contact points and measures of a body at rest |
 //! | `solve` | sliders of the body model from stature and body mass index |
 //! | [`person`] | a dressed person at rest: skin, eyes, hair and clothes as one mesh |
+//! | `shown` | the skin that is not hidden |
 //! | [`surface`] | what the parts of a person look like |
 //! | `garment`, `refine`, `cut`, `lookup` | clothes, cut from a shell along scalar fields |
 //! | `clothes`, `layers`, `drape`, `skirt` | how garments hang, one over the other |
@@ -19,6 +20,7 @@
 //! | [`trunk`], `settle` | keep arms out of trunks, lay bodies on the ground |
 //! | [`points`] | poses single vertices in double precision |
 //! | [`shape`] | primitive shapes |
+//! | `wide` | functions for processors with wider vectors |
 
 mod beard;
 pub mod body;
@@ -40,6 +42,7 @@ pub mod pose;
 mod refine;
 mod settle;
 pub mod shape;
+mod shown;
 pub mod skeleton;
 mod skirt;
 mod solve;
@@ -47,3 +50,4 @@ pub mod stance;
 pub mod surface;
 pub mod sway;
 pub mod trunk;
+mod wide;

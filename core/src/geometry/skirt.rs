@@ -151,7 +151,7 @@ impl Level {
     pub fn find(shell: &Shell<'_>, template_y: f32) -> Option<Self> {
         let (mut n, mut sz, mut sy, mut szz, mut szy) = (0.0f32, 0.0f32, 0.0f32, 0.0f32, 0.0f32);
         let scale = shell.heads_m[0].y as f32 / 0.9;
-        for (p, at) in shell.positions.iter().zip(&shell.places) {
+        for (p, at) in shell.positions.iter().zip(shell.places) {
             let above = at.p.y - template_y;
             if at.arm > 0.0 || above.abs() > 0.035 {
                 continue;
@@ -211,7 +211,7 @@ fn rings(
     let (low, high) = (heights.hem_y - 0.1 * reach, heights.top_y(middle_z) + tilt);
     let points = under
         .iter()
-        .zip(&shell.places)
+        .zip(shell.places)
         .filter(|(q, at)| at.arm < 0.02 && q.y > low && q.y < high)
         .map(|(q, _)| *q);
     let origin = Vec3::new(0.0, high, middle_z);
