@@ -14,10 +14,9 @@ use crate::geometry::body::RestBody;
 use crate::geometry::person::{Dressed, MeshKey};
 use crate::geometry::points;
 use crate::geometry::pose::PosedSkeleton;
-use crate::geometry::skeleton::JOINT_COUNT;
+use crate::geometry::skeleton::{JOINT_COUNT, Limb, Side, trunk};
 use crate::geometry::stance::Stance;
 use crate::geometry::surface::surface;
-use crate::geometry::sway;
 use crate::library::Library;
 use crate::library::figure::LOD_COUNT;
 use crate::library::pose::PREFIX;
@@ -90,7 +89,7 @@ fn pose_one<'a>(
     let view_from_model = *view_from_world * world_from_model(&person.placement);
     let scale = person.placement.scale.abs().max_element();
     let (center, radius_m) = bounds(&skeleton, &body);
-    let radius_m = radius_m + skirt_reach_m(&person.outfit);
+    let radius_m = radius_m.max(cloth_radius_m(&skeleton, &body, &person.outfit, center));
     Ok(Posed {
         center_in_view: view_from_model.transform_point3(center),
         radius_m: radius_m * scale,
@@ -138,6 +137,24 @@ fn skirt_reach_m(outfit: &Outfit) -> f64 {
     let skirt = if outfit.bottom.kind.is_skirt() { 0.08 + 0.35 * outfit.bottom.flare } else { 0.0 };
     let coat = if outfit.outer.kind == OuterKind::Coat { 0.15 } else { 0.0 };
     skirt + coat
+}
+
+/// Radius of a sphere about a centre beyond which no skirt and no coat hangs, wherever down is: no
+/// longer than the legs, from the hips. 0 where none is worn.
+fn cloth_radius_m(
+    skeleton: &PosedSkeleton,
+    body: &RestBody,
+    outfit: &Outfit,
+    center_m: DVec3,
+) -> f64 {
+    let reach_m = skirt_reach_m(outfit);
+    if reach_m <= 0.0 {
+        return 0.0;
+    }
+    let head_m = |joint: usize| body.heads_m[joint];
+    let leg_m = head_m(trunk::HIPS).distance(head_m(Side::Left.joint(Limb::Foot)));
+    let hips_m = skeleton.joint_m(trunk::HIPS, head_m(trunk::HIPS));
+    hips_m.distance(center_m) + leg_m + reach_m
 }
 
 /// Centre and radius of a sphere round the posed, dressed body, model space.
@@ -194,7 +211,11 @@ fn add_mesh(
         });
     }
     let first = list.palette.len() as u32;
-    let cloth = sway::joints(&posed.skeleton, &posed.body.heads_m);
+    let cloth = dressed.hang.as_ref().map_or_else(Vec::new, |hang| {
+        // Weight pulls down in the world.
+        let to_model = posed.person.placement.rotation.inverse();
+        hang.joints(&posed.skeleton, &posed.body, to_model * DVec3::NEG_Y)
+    });
     let bones = posed.skeleton.model_from_rest.iter().chain(&cloth);
     list.palette.extend(bones.map(|m| rows(&(posed.view_from_model * *m))));
     list.objects.push(abi::DrawObject {

@@ -10,10 +10,12 @@ use glam::Vec3;
 use super::body::{RestBody, SOLE_M};
 use super::cut::{Builder, Rim, normals_within};
 use super::garment::{self, Cuts, DEEP_M, Fields, NOT_WORN, Piece, Place, step};
+use super::hang::Hang;
 use super::layers::{self, Shell, raised};
 use super::person::{Evaluated, PartKind, Parts};
 use super::refine::Refined;
 use super::skirt::{self, Level, Skirt};
+use super::trunk::Trunk;
 use crate::library::figure::{Figure, GroupId};
 use crate::scene::{BottomKind, ShoeKind};
 
@@ -35,11 +37,13 @@ pub(super) struct Worn {
     pub outer: Option<Vec<Vec3>>,
     pub coat: Option<Skirt>,
     pub feet: layers::Footwear,
+    /// What skirt and coat hang on.
+    pub hang: Option<Hang>,
 }
 
 impl Worn {
     /// Lays one garment over the other, from the skin outwards.
-    pub fn new(shell: &Shell<'_>, cuts: &Cuts) -> Self {
+    pub fn new(shell: &Shell<'_>, cuts: &Cuts, trunk: &Trunk) -> Self {
         let fields = Fields::new(cuts, shell.places);
         let cut = (cuts, &fields);
         let feet = layers::footwear(shell, cuts);
@@ -81,7 +85,23 @@ impl Worn {
             }
             Skirt::new(shell, &cut, &under)
         });
-        Self { bottom, top, skirt, outer, coat, feet }
+        let mut all = Self { bottom, top, skirt, outer, coat, feet, hang: None };
+        all.hang(shell, cuts, trunk);
+        all
+    }
+
+    /// Hangs skirt and coat on one net, that of the longer of them, so that neither goes through the
+    /// other.
+    fn hang(&mut self, shell: &Shell<'_>, cuts: &Cuts, trunk: &Trunk) {
+        let parted = cuts.open && self.skirt.is_none();
+        let longer = match (&self.skirt, &self.coat) {
+            (Some(skirt), Some(coat)) if skirt.hem_m() < coat.hem_m() => Some(skirt),
+            (skirt, coat) => coat.as_ref().or(skirt.as_ref()),
+        };
+        self.hang = longer.map(|longer| longer.net(shell, trunk, parted));
+        if let Some(net) = &self.hang {
+            self.skirt.iter_mut().chain(&mut self.coat).for_each(|skirt| skirt.hang_on(shell, net));
+        }
     }
 
     /// Takes away what of a skirt lies under a top or an outer garment.
@@ -119,13 +139,19 @@ fn spread_over(layer: &mut [Vec3], shell: &Shell<'_>, skirt: &[Vec3]) {
     }
 }
 
-/// Adds all clothes to the parts.
-pub(super) fn add(out: &mut Parts, figure: &Figure, rest: &RestBody, cuts: &Cuts, lod: usize) {
+/// Adds all clothes to the parts; gives what skirts and coats hang on.
+pub(super) fn add(
+    out: &mut Parts,
+    figure: &Figure,
+    rest: &RestBody,
+    cuts: &Cuts,
+    lod: usize,
+) -> Option<Hang> {
     let body = Evaluated::new(figure, rest, GroupId::Shell, lod);
     let places = figure.places(GroupId::Shell, body.positions.len() as u32);
     let on = (&body.positions[..], &body.normals[..]);
     let shell = Shell::new(figure, lod, on, places, &rest.heads_m);
-    let mut worn = Worn::new(&shell, cuts);
+    let mut worn = Worn::new(&shell, cuts, &rest.trunk);
     worn.hide_skirt(&shell, cuts);
     let cutter = Cutter { body: &body, shell: &shell, cuts, lod };
 
@@ -135,6 +161,7 @@ pub(super) fn add(out: &mut Parts, figure: &Figure, rest: &RestBody, cuts: &Cuts
         add_outer(out, &cutter, &worn, outer);
     }
     add_feet(out, &cutter, &worn);
+    worn.hang
 }
 
 fn add_bottom(out: &mut Parts, cutter: &Cutter<'_>, worn: &Worn) {

@@ -15,7 +15,7 @@
 //! | `clothes`, `layers`, `drape`, `skirt` | how garments hang, one over the other |
 //! | `hair`, `beard`, `lashes`, `headwear`, `glasses` | what grows and sits on the head |
 //! | [`skeleton`], [`pose`] | joints, and clips and poses retargeted to a body |
-//! | [`sway`] | joints of cloth that hangs round both legs |
+//! | [`hang`], `sway` | joints of cloth that hangs round both legs |
 //! | [`stance`], `hand` | what joints and fingers are to do |
 //! | [`trunk`], `settle` | keep arms out of trunks, lay bodies on the ground |
 //! | [`points`] | poses single vertices in double precision |
@@ -31,6 +31,7 @@ mod garment;
 mod glasses;
 mod hair;
 mod hand;
+pub mod hang;
 mod headwear;
 mod lashes;
 mod layers;
@@ -48,6 +49,6 @@ mod skirt;
 mod solve;
 pub mod stance;
 pub mod surface;
-pub mod sway;
+mod sway;
 pub mod trunk;
 mod wide;

@@ -13,6 +13,7 @@ use glam::Vec3;
 use super::body::RestBody;
 use super::cut::{Builder, Surface as Cloth, net_normals};
 use super::garment::{self, Cuts};
+use super::hang::Hang;
 use super::shown::Shown;
 use super::{beard, clothes, glasses, hair, headwear, lashes, phenotype};
 use crate::base::hash::Hasher;
@@ -77,6 +78,8 @@ pub struct Dressed {
     pub mesh: Arc<Mesh>,
     /// Parts in a fixed order; empty ones are left out.
     pub parts: Vec<Part>,
+    /// What moves a skirt or a coat: its joints come after the skeleton's.
+    pub hang: Option<Hang>,
 }
 
 /// A group evaluated for one person at one level of detail.
@@ -213,11 +216,11 @@ pub fn dress(figure: &Figure, person: &Person, rest: &RestBody, lod: usize) -> D
     let skin = add_skin(&mut out, figure, person, (rest, &cuts), lod);
     add_face(&mut out, figure, person, (rest, &skin), lod);
     add_head(&mut out, figure, person, (rest, &skin), lod);
-    clothes::add(&mut out, figure, rest, &cuts, lod);
+    let hang = clothes::add(&mut out, figure, rest, &cuts, lod);
     let mut mesh = out.builder.mesh;
     bound(&mut mesh);
     mesh.shrink_to_fit();
-    Dressed { mesh: Arc::new(mesh), parts: out.parts }
+    Dressed { mesh: Arc::new(mesh), parts: out.parts, hang }
 }
 
 /// The skin that shows; gives back all of it.

@@ -117,7 +117,7 @@ fn every_mesh_is_sound() {
     let figure = Figure::built_in().unwrap();
     for i in 0..15 {
         for lod in 0..LOD_COUNT {
-            let Dressed { mesh, parts } = dressed(&figure, i, lod);
+            let Dressed { mesh, parts, .. } = dressed(&figure, i, lod);
             let n = mesh.positions.len();
             assert!([mesh.normals.len(), mesh.uvs.len(), mesh.skin.len()] == [n; 3]);
             assert!(mesh.triangles.iter().flat_map(|t| t.get()).all(|v| (v as usize) < n));
@@ -200,7 +200,7 @@ fn with_clothes(
     let places = figure.places(GroupId::Shell, body.positions.len() as u32);
     let on = (&body.positions[..], &body.normals[..]);
     let shell = Shell::new(figure, lod, on, places, &rest.heads_m);
-    look(&body, &shell, &Worn::new(&shell, &cuts), &cuts, &rest);
+    look(&body, &shell, &Worn::new(&shell, &cuts, &rest.trunk), &cuts, &rest);
 }
 
 /// Skin that is drawn although it is under a garment lies below the cloth: going out along
