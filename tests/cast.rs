@@ -136,9 +136,41 @@ fn somebody_of_a_frame_can_be_kept() {
     let settled = read_all(file::load(&dir.path().join("config.json")).unwrap()).unwrap();
     let was = scene.people.iter().find(|p| p.slot + 1 == *id).unwrap();
     for p in people(settled.document, 3) {
-        assert_eq!(MeshKey::new(&p), MeshKey::new(was));
-        assert_eq!((&p.body, &p.look), (&was.body, &was.look));
+        assert_eq!((&p.body, &p.look, &p.outfit), (&was.body, &was.look, &was.outfit));
     }
+}
+
+#[test]
+fn clothes_keep_the_colours_and_patterns_that_are_given() {
+    let cast = json!([{"wardrobe": {
+        "top": {"kind": "sweater", "color": {"linear": [0.5, 0.25, 0.125]}, "pattern": "none"},
+        "bottom": {"kind": "jeans", "hue_offset_deg": 40},
+        "shoes": {"color": [1, 1, 1], "sock_color": [0, 0, 0]},
+    }}]);
+    let given = document(&json!({"identities": 1, "cast": cast}));
+    let all = people(given.clone(), 12);
+    for p in &all {
+        assert_eq!((p.outfit.top.color, &p.outfit.top.texture), ([0.5, 0.25, 0.125], &None));
+        assert_eq!(p.outfit.bottom.hue_offset_deg, 40.0);
+        assert_eq!((p.outfit.shoes.color, p.outfit.shoes.sock_color), ([1.0; 3], [0.0; 3]));
+    }
+    // What is not given is drawn anew each time.
+    assert!(all.iter().any(|p| p.outfit.bottom.color != all[0].outfit.bottom.color));
+    let listed = &members(given)[0].wardrobe;
+    assert_eq!((&listed.top.pattern, listed.bottom.color), (&Some("none".to_owned()), None));
+}
+
+#[test]
+fn colours_and_patterns_that_make_no_sense_are_refused_with_their_field() {
+    let of = |wardrobe: Value| {
+        let document = document(&json!({"cast": [{}, {"wardrobe": wardrobe}]}));
+        Sampler::new(Arc::new(document), names()).unwrap_err().to_string()
+    };
+    let color = of(json!({"top": {"color": [0, 2, 0]}}));
+    assert!(color.contains("people.cast[1].wardrobe.top.color"), "{color}");
+    let pattern = of(json!({"outer": {"pattern": "cloth/stripess"}}));
+    assert!(pattern.starts_with("people.cast[1].wardrobe.outer.pattern: there is no"), "{pattern}");
+    assert!(pattern.contains("did you mean"), "{pattern}");
 }
 
 #[test]

@@ -15,10 +15,9 @@ use crate::geometry::body::RestBody;
 use crate::geometry::person::{Dressed, MeshKey};
 use crate::geometry::points;
 use crate::geometry::pose::PosedSkeleton;
-use crate::geometry::skeleton::JOINT_COUNT;
+use crate::geometry::skeleton::{JOINT_COUNT, Limb, Side, trunk};
 use crate::geometry::stance::Stance;
 use crate::geometry::surface::surface;
-use crate::geometry::sway;
 use crate::library::Library;
 use crate::library::figure::LOD_COUNT;
 use crate::library::pose::PREFIX;
@@ -90,13 +89,14 @@ fn pose_one<'a>(
     skeleton.ground(contacts);
     let view_from_model = *view_from_world * world_from_model(&person.placement);
     let scale = person.placement.scale.abs().max_element();
-    let cloth_m = skirt_reach_m(&person.outfit);
-    let sphere = |j: usize| Sphere {
-        center: view_from_model.transform_point3(skeleton.joint_m(j, body.heads_m[j])),
-        radius_m: (body.reach_m[j] + cloth_m) * scale,
+    let of_joint = |j: usize| (skeleton.joint_m(j, body.heads_m[j]), body.reach_m[j]);
+    let cloth = hanging_cloth(&skeleton, &body, &person.outfit);
+    let in_view = |(center_m, radius_m): (DVec3, f64)| Sphere {
+        center: view_from_model.transform_point3(center_m),
+        radius_m: radius_m * scale,
     };
     Ok(Posed {
-        hull: (0..JOINT_COUNT).map(sphere).collect(),
+        hull: (0..JOINT_COUNT).map(of_joint).chain(cloth).map(in_view).collect(),
         person,
         key,
         body,
@@ -143,6 +143,20 @@ fn skirt_reach_m(outfit: &Outfit) -> f64 {
     skirt + coat
 }
 
+/// Centre and radius of a sphere, model space, beyond which no skirt and no coat hangs, wherever down
+/// is: no longer than the legs, from the hips. Nothing where none is worn.
+fn hanging_cloth(
+    skeleton: &PosedSkeleton,
+    body: &RestBody,
+    outfit: &Outfit,
+) -> Option<(DVec3, f64)> {
+    let reach_m = skirt_reach_m(outfit);
+    let head_m = |joint: usize| body.heads_m[joint];
+    let leg_m = head_m(trunk::HIPS).distance(head_m(Side::Left.joint(Limb::Foot)));
+    let hips_m = skeleton.joint_m(trunk::HIPS, head_m(trunk::HIPS));
+    (reach_m > 0.0).then_some((hips_m, leg_m + reach_m))
+}
+
 fn relevance(drawing: &Drawing, posed: &Posed) -> Relevance {
     if !drawing.options.raster {
         return Relevance { in_view: false, casts_shadow: false };
@@ -186,7 +200,11 @@ fn add_mesh(
         });
     }
     let first = list.palette.len() as u32;
-    let cloth = sway::joints(&posed.skeleton, &posed.body.heads_m);
+    let cloth = dressed.hang.as_ref().map_or_else(Vec::new, |hang| {
+        // Weight pulls down in the world.
+        let to_model = posed.person.placement.rotation.inverse();
+        hang.joints(&posed.skeleton, &posed.body, to_model * DVec3::NEG_Y)
+    });
     let bones = posed.skeleton.model_from_rest.iter().chain(&cloth);
     list.palette.extend(bones.map(|m| rows(&(posed.view_from_model * *m))));
     list.objects.push(abi::DrawObject {

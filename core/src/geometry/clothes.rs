@@ -10,10 +10,12 @@ use glam::Vec3;
 use super::body::{RestBody, SOLE_M};
 use super::cut::{Builder, Rim, normals_within};
 use super::garment::{self, Cuts, DEEP_M, Fields, NOT_WORN, Piece, Place, step};
+use super::hang::Hang;
 use super::layers::{self, Shell, raised};
 use super::person::{Evaluated, PartKind, Parts};
 use super::refine::Refined;
 use super::skirt::{self, Level, Skirt};
+use super::trunk::Trunk;
 use crate::library::figure::{Figure, GroupId};
 use crate::scene::{BottomKind, ShoeKind};
 
@@ -35,12 +37,14 @@ pub(super) struct Worn {
     pub outer: Option<Vec<Vec3>>,
     pub coat: Option<Skirt>,
     pub feet: layers::Footwear,
+    /// What skirt and coat hang on.
+    pub hang: Option<Hang>,
 }
 
 impl Worn {
     /// Lays one garment over the other, from the skin outwards.
-    pub fn new(shell: &Shell<'_>, cuts: &Cuts) -> Self {
-        let fields = Fields::new(cuts, &shell.places);
+    pub fn new(shell: &Shell<'_>, cuts: &Cuts, trunk: &Trunk) -> Self {
+        let fields = Fields::new(cuts, shell.places);
         let cut = (cuts, &fields);
         let feet = layers::footwear(shell, cuts);
         let bottom = cuts.wears(Piece::Bottom).then(|| layers::bottom(shell, cut, &feet.shoes));
@@ -81,7 +85,23 @@ impl Worn {
             }
             Skirt::new(shell, &cut, &under)
         });
-        Self { bottom, top, skirt, outer, coat, feet }
+        let mut all = Self { bottom, top, skirt, outer, coat, feet, hang: None };
+        all.hang(shell, cuts, trunk);
+        all
+    }
+
+    /// Hangs skirt and coat on one net, that of the longer of them, so that neither goes through the
+    /// other.
+    fn hang(&mut self, shell: &Shell<'_>, cuts: &Cuts, trunk: &Trunk) {
+        let parted = cuts.open && self.skirt.is_none();
+        let longer = match (&self.skirt, &self.coat) {
+            (Some(skirt), Some(coat)) if skirt.hem_m() < coat.hem_m() => Some(skirt),
+            (skirt, coat) => coat.as_ref().or(skirt.as_ref()),
+        };
+        self.hang = longer.map(|longer| longer.net(shell, trunk, parted));
+        if let Some(net) = &self.hang {
+            self.skirt.iter_mut().chain(&mut self.coat).for_each(|skirt| skirt.hang_on(shell, net));
+        }
     }
 
     /// Takes away what of a skirt lies under a top or an outer garment.
@@ -105,7 +125,7 @@ impl Worn {
 fn spread_over(layer: &mut [Vec3], shell: &Shell<'_>, skirt: &[Vec3]) {
     let line = Vec3::new(0.0, 0.0, shell.heads_m[0].z as f32);
     let flat = |p: Vec3| Vec3::new(p.x, 0.0, p.z) - line;
-    for (q, at) in layer.iter_mut().zip(&shell.places) {
+    for (q, at) in layer.iter_mut().zip(shell.places) {
         if at.leg < -0.1 || at.arm > 0.0 {
             continue;
         }
@@ -119,13 +139,19 @@ fn spread_over(layer: &mut [Vec3], shell: &Shell<'_>, skirt: &[Vec3]) {
     }
 }
 
-/// Adds all clothes to the parts.
-pub(super) fn add(out: &mut Parts, figure: &Figure, rest: &RestBody, cuts: &Cuts, lod: usize) {
+/// Adds all clothes to the parts; gives what skirts and coats hang on.
+pub(super) fn add(
+    out: &mut Parts,
+    figure: &Figure,
+    rest: &RestBody,
+    cuts: &Cuts,
+    lod: usize,
+) -> Option<Hang> {
     let body = Evaluated::new(figure, rest, GroupId::Shell, lod);
-    let places = garment::places(figure, GroupId::Shell, body.positions.len() as u32);
+    let places = figure.places(GroupId::Shell, body.positions.len() as u32);
     let on = (&body.positions[..], &body.normals[..]);
     let shell = Shell::new(figure, lod, on, places, &rest.heads_m);
-    let mut worn = Worn::new(&shell, cuts);
+    let mut worn = Worn::new(&shell, cuts, &rest.trunk);
     worn.hide_skirt(&shell, cuts);
     let cutter = Cutter { body: &body, shell: &shell, cuts, lod };
 
@@ -135,6 +161,7 @@ pub(super) fn add(out: &mut Parts, figure: &Figure, rest: &RestBody, cuts: &Cuts
         add_outer(out, &cutter, &worn, outer);
     }
     add_feet(out, &cutter, &worn);
+    worn.hang
 }
 
 fn add_bottom(out: &mut Parts, cutter: &Cutter<'_>, worn: &Worn) {
@@ -170,7 +197,7 @@ fn add_top(out: &mut Parts, cutter: &Cutter<'_>, worn: &Worn) {
         ];
         for (piece, rise) in sewn {
             if cuts.wears(piece) {
-                let layer = raised(&worn.top, &normals, &shell.places, rise);
+                let layer = raised(&worn.top, &normals, shell.places, rise);
                 cutter.cut(builder, piece, &layer, cutter.rim());
             }
         }
@@ -199,7 +226,7 @@ fn add_outer(out: &mut Parts, cutter: &Cutter<'_>, worn: &Worn, outer: &[Vec3]) 
         coat.add(&mut out.builder, cutter.rim());
     }
     if cutter.lod < 4 {
-        let layer = raised(outer, &normals, &cutter.shell.places, |at| {
+        let layer = raised(outer, &normals, cutter.shell.places, |at| {
             let [off, up] = collar_rise(cutter.cuts.outer_neck(at.p));
             [off + 0.002, up]
         });
@@ -228,12 +255,14 @@ fn add_feet(out: &mut Parts, cutter: &Cutter<'_>, worn: &Worn) {
         (PartKind::Soles, Piece::Sole, &worn.feet.soles, -1.0, None),
     ];
     for (kind, piece, layer, sign, rim) in parts {
-        let mut field = cutter.fields(piece);
+        let Extent { mut field, mut triangles } = cutter.extent(piece);
         for (f, p) in field.iter_mut().zip(&worn.feet.shoes).filter(|(f, _)| **f > NOT_WORN) {
             *f = f.min(sign * (p.y - edge_m));
         }
-        let normals = normals_within(&worn.feet.shoes, shell.net, &field);
-        let part = Refined::new(&cutter.body.with(layer, &normals), &field);
+        let corners = |t: &u32| shell.net.triangles[*t as usize];
+        triangles.retain(|t| corners(t).iter().any(|&v| field[usize::from(v)] >= 0.0));
+        let normals = normals_within(&worn.feet.shoes, shell.net, &triangles);
+        let part = Refined::new(&cutter.body.with(layer, &normals), &field, &triangles);
         let range = out.builder.add_cut(&part.surface(), &part.field, rim);
         out.add(kind, range, true);
     }
@@ -245,6 +274,14 @@ struct Cutter<'a> {
     shell: &'a Shell<'a>,
     cuts: &'a Cuts,
     lod: usize,
+}
+
+/// Where on the shell a piece is.
+struct Extent {
+    /// Metres inside its edge, by vertex; [`NOT_WORN`] at those of triangles that are all outside.
+    field: Vec<f32>,
+    /// Triangles with a corner that is inside, ascending.
+    triangles: Vec<u32>,
 }
 
 /// A piece that was added to a mesh.
@@ -267,18 +304,19 @@ impl Cutter<'_> {
         if inside < 0.0 { inside } else { inside.min(self.cuts.deepest_m(piece, at)) }
     }
 
-    /// The same at the shell's vertices; [`NOT_WORN`] at those of triangles that are all outside.
-    fn fields(&self, piece: Piece) -> Vec<f32> {
+    fn extent(&self, piece: Piece) -> Extent {
         let shell = self.shell;
         let near = |at: &Place| match self.cuts.is_off(piece, *at, 0.0) {
             true => NOT_WORN,
             false => self.field(piece, *at),
         };
         let mut field: Vec<f32> = shell.places.iter().map(near).collect();
+        let mut triangles = Vec::with_capacity(shell.net.triangles.len());
         // A cut lies between the values on its two sides.
-        for t in &shell.net.triangles {
+        for (i, t) in shell.net.triangles.iter().enumerate() {
             let v = t.map(usize::from);
             if v.iter().any(|&v| field[v] >= 0.0) {
+                triangles.push(i as u32);
                 for v in v {
                     if field[v] == NOT_WORN {
                         field[v] = self.field(piece, shell.places[v]);
@@ -286,15 +324,15 @@ impl Cutter<'_> {
                 }
             }
         }
-        field
+        Extent { field, triangles }
     }
 
     /// The finest level follows the curve of a hem inside the shell's triangles.
     fn cut(&self, builder: &mut Builder, piece: Piece, layer: &[Vec3], rim: Option<Rim>) -> Added {
         let shell = self.shell;
-        let field = self.fields(piece);
-        let normals = normals_within(layer, shell.net, &field);
-        let mut part = Refined::new(&self.body.with(layer, &normals), &field);
+        let Extent { field, triangles } = self.extent(piece);
+        let normals = normals_within(layer, shell.net, &triangles);
+        let mut part = Refined::new(&self.body.with(layer, &normals), &field, &triangles);
         if self.lod == 0 {
             part.refine(|a, b| self.field(piece, Place::between(shell.places[a], shell.places[b])));
         }

@@ -6,7 +6,7 @@
 
 use std::ops::Range;
 
-use glam::Vec3;
+use glam::{Vec3, Vec3A};
 
 use super::lookup::{Lookup, edge};
 use crate::library::figure::Net;
@@ -41,45 +41,42 @@ pub(super) fn smooth_normals(positions: &[Vec3], render: &[u16], triangles: &[u1
     sums.iter().map(|n| n.normalize_or(Vec3::Y)).collect()
 }
 
-/// The same of a net's vertices, where they belong to a triangle that has a corner at which `field`
-/// is not negative; +Y elsewhere.
-pub(super) fn normals_within(positions: &[Vec3], net: &Net, field: &[f32]) -> Vec<Vec3> {
+/// The same of the vertices of some of a net's triangles; +Y elsewhere.
+pub(super) fn normals_within(positions: &[Vec3], net: &Net, triangles: &[u32]) -> Vec<Vec3> {
     let mut wanted = vec![false; positions.len()];
-    for t in &net.triangles {
-        let v = t.map(usize::from);
-        if v.iter().any(|&v| field[v] >= 0.0) {
-            v.iter().for_each(|&v| wanted[v] = true);
-        }
+    for t in triangles {
+        net.triangles[*t as usize].iter().for_each(|&v| wanted[usize::from(v)] = true);
     }
     let near = net.triangles.iter().filter(|t| t.iter().any(|&v| wanted[usize::from(v)]));
-    let mut normals = vec![Vec3::ZERO; positions.len()];
-    add_normals(&mut normals, positions, near);
-    for (n, wanted) in normals.iter_mut().zip(wanted) {
-        *n = if wanted { n.normalize_or(Vec3::Y) } else { Vec3::Y };
-    }
-    normals
+    normals_of(positions, near, &wanted)
 }
 
 /// Smooth unit normals of all of a net's vertices.
 pub(super) fn net_normals(positions: &[Vec3], net: &Net) -> Vec<Vec3> {
-    let mut normals = vec![Vec3::ZERO; positions.len()];
-    add_normals(&mut normals, positions, net.triangles.iter());
-    normals.iter_mut().for_each(|n| *n = n.normalize_or(Vec3::Y));
-    normals
+    normals_of(positions, net.triangles.iter(), &vec![true; positions.len()])
 }
 
-fn add_normals<'a>(
-    sums: &mut [Vec3],
+/// Smooth unit normals of the vertices that are wanted, from all triangles round them; +Y elsewhere.
+pub(super) fn normals_of<'a>(
     positions: &[Vec3],
     triangles: impl Iterator<Item = &'a [u16; 3]>,
-) {
+    wanted: &[bool],
+) -> Vec<Vec3> {
+    // Vectors of four numbers are added at once.
+    let points: Vec<Vec3A> = positions.iter().map(|p| Vec3A::from(*p)).collect();
+    let mut sums = vec![Vec3A::ZERO; points.len()];
     for t in triangles {
         let [a, b, c] = t.map(usize::from);
-        let n = (positions[b] - positions[a]).cross(positions[c] - positions[a]);
+        let n = (points[b] - points[a]).cross(points[c] - points[a]);
         sums[a] += n;
         sums[b] += n;
         sums[c] += n;
     }
+    let unit = |(n, wanted): (&Vec3A, &bool)| match wanted {
+        true => Vec3::from(*n).normalize_or(Vec3::Y),
+        false => Vec3::Y,
+    };
+    sums.iter().zip(wanted).map(unit).collect()
 }
 
 /// A hem's rim.
@@ -136,20 +133,17 @@ impl Builder {
         Self { mesh, known: Vec::new() }
     }
 
-    /// Adds the triangles for which `keep` holds, of their render vertices and their vertices;
-    /// returns their range.
-    pub fn add_where(
+    /// Adds some triangles of a surface as they are; returns their range.
+    pub fn add_whole(
         &mut self,
         s: &Surface<'_>,
-        keep: impl Fn([u16; 3], [usize; 3]) -> bool,
+        triangles: impl Iterator<Item = u32>,
     ) -> Range<u32> {
         let first = self.start(s.render.len());
-        for t in s.triangles.chunks_exact(3) {
-            let corners = [t[0], t[1], t[2]].map(|r| usize::from(s.render[usize::from(r)]));
-            if keep([t[0], t[1], t[2]], corners) {
-                let tri = [t[0], t[1], t[2]].map(|r| self.keep(s, r));
-                self.mesh.triangles.push(Triangle::new(tri));
-            }
+        let corners = s.triangles.as_chunks::<3>().0;
+        for t in triangles {
+            let tri = corners[t as usize].map(|r| self.keep(s, r));
+            self.mesh.triangles.push(Triangle::new(tri));
         }
         first..self.mesh.triangles.len() as u32
     }
@@ -382,8 +376,7 @@ mod tests {
             skin: &skin,
         };
         // Field values say which triangles are kept: here all.
-        let mut fine = Refined::new(&s, &field.iter().map(|f| f.abs()).collect::<Vec<_>>());
-        fine.field = fine.origin.iter().map(|&v| field[usize::from(v)]).collect();
+        let mut fine = Refined::new(&s, &field, &[0, 1, 2, 3, 4, 5, 6, 7]);
         fine.refine(|a, b| curve((positions[a] + positions[b]) * 0.5));
         let surface = fine.surface();
         let mut edges = BTreeMap::<[u16; 2], i32>::new();

@@ -7,8 +7,8 @@
 
 use glam::Vec3;
 
-use crate::library::figure::data::LIMB_UNIT;
-use crate::library::figure::{ARM_M, Figure, GroupId, LEG_M, LOD_COUNT};
+pub(super) use crate::library::figure::Place;
+use crate::library::figure::{ARM_M, Figure, LEG_M, LOD_COUNT};
 use crate::scene::{BottomKind, OuterKind, Outfit, ShoeKind, TopKind};
 
 /// Upper edge of trousers on the template, metres above its origin.
@@ -29,6 +29,8 @@ const HIDDEN_M: [f32; LOD_COUNT] = [0.016, 0.016, 0.012, 0.006, 0.002];
 pub(super) const DEEP_M: f32 = 0.045;
 /// How far skin under cloth is drawn inwards, by level of detail.
 const TUCK_M: [f32; LOD_COUNT] = [0.004, 0.004, 0.006, 0.010, 0.016];
+/// So far inside a piece's edge skin is drawn inwards fully.
+const TUCKED_M: f32 = 0.010;
 /// Farther than this from a piece's edge skin is not drawn inwards.
 const COVERS_M: f32 = 0.004;
 /// A piece that is not worn.
@@ -53,14 +55,6 @@ pub(super) enum Piece {
     Pocket,
     /// Hood that lies on the back.
     Hood,
-}
-
-/// Place of a vertex on the template.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Place {
-    pub p: Vec3,
-    pub arm: f32,
-    pub leg: f32,
 }
 
 /// Cuts of one person's clothes.
@@ -217,38 +211,40 @@ impl Cuts {
         (self.outer == OuterKind::Jacket).then_some(JACKET_Y)
     }
 
-    /// How far from any opening: not to be seen from there is also what lies under two garments.
-    fn depth(&self, at: Place) -> f32 {
+    /// Whether a place is farther than so many metres from any opening: not to be seen from there is
+    /// also what lies under two garments.
+    fn is_deep(&self, at: Place, limit_m: f32) -> bool {
         // Top and trousers close each other's opening at the waist; wide ones can be looked into.
         let in_top = (self.hem(at) + 0.03)
             .min(self.sleeve_end(at) - 2.0 * self.top_m)
             .min(self.neck(at.p) - self.top_m);
-        let mut depth = in_top;
-        if self.wears(Piece::Bottom) {
+        if in_top > limit_m {
+            return true;
+        }
+        let depth = if self.wears(Piece::Bottom) {
             let long = self.bottom != BottomKind::Shorts;
             let deep = if long { 2.5 } else { 8.0 } * self.bottom_m;
             let in_bottom = (self.waist(at) + 0.03).min(self.cuff(at) - deep);
-            depth = depth.max(in_bottom.min(at.p.y + 0.775));
+            in_bottom.min(at.p.y + 0.775)
         } else {
             let begin = self.skirt_y().unwrap_or(WAIST_Y) - at.p.y - on_arm(at);
-            depth = depth.max((begin + 0.02).min(self.cuff(at) - 0.22));
-        }
-        if self.wears(Piece::Socks) {
-            depth = depth.max(self.socks(at));
-        }
-        match self.shoes {
-            ShoeKind::Sandals | ShoeKind::Barefoot => depth,
-            _ => depth.max(self.shoes(at)),
-        }
+            (begin + 0.02).min(self.cuff(at) - 0.22)
+        };
+        let closed = !matches!(self.shoes, ShoeKind::Sandals | ShoeKind::Barefoot);
+        depth > limit_m
+            || self.wears(Piece::Socks) && self.socks(at) > limit_m
+            || closed && self.shoes(at) > limit_m
     }
 
-    /// How far inside the nearest piece that lies on the skin.
+    /// How far inside a piece that lies on the skin, the nearest unless one is [`TUCKED_M`] inside.
     fn cover(&self, at: Place) -> f32 {
-        [Piece::Top, Piece::Bottom, Piece::Shoes, Piece::Socks]
-            .into_iter()
-            .filter(|piece| !self.is_off(*piece, at, COVERS_M))
-            .map(|piece| self.field(piece, at))
-            .fold(NOT_WORN, f32::max)
+        let mut depth = NOT_WORN;
+        for piece in [Piece::Top, Piece::Bottom, Piece::Shoes, Piece::Socks] {
+            if depth < TUCKED_M && !self.is_off(piece, at, COVERS_M) {
+                depth = depth.max(self.field(piece, at));
+            }
+        }
+        depth
     }
 
     /// Lower edge of the top.
@@ -413,51 +409,32 @@ impl Fields {
     }
 }
 
-/// Places of the first `count` vertices of the skin or the shell.
-pub(super) fn places(figure: &Figure, id: GroupId, count: u32) -> Vec<Place> {
-    figure.vertices(id, count).map(|v| place(figure, v)).collect()
-}
-
-fn place(figure: &Figure, v: usize) -> Place {
-    let (d, t) = (figure.data(), figure.template());
-    Place {
-        p: Vec3::new(t.x[v], t.y[v], t.z[v]),
-        arm: f32::from(d.arm[v]) * LIMB_UNIT,
-        leg: f32::from(d.leg[v]) * LIMB_UNIT,
-    }
-}
-
-impl Place {
-    /// Half way between two places.
-    pub fn between(a: Self, b: Self) -> Self {
-        Self { p: (a.p + b.p) * 0.5, arm: (a.arm + b.arm) * 0.5, leg: (a.leg + b.leg) * 0.5 }
-    }
-}
-
 /// Which skin vertices can never be seen.
 pub(super) fn hidden(figure: &Figure, cuts: &Cuts, places: &[Place], lod: usize) -> Vec<bool> {
     places
         .iter()
         .zip(&figure.data().covered)
-        .map(|(at, &covered)| covered != 0 && cuts.depth(*at) > HIDDEN_M[lod])
+        .map(|(at, &covered)| covered != 0 && cuts.is_deep(*at, HIDDEN_M[lod]))
         .collect()
 }
 
-/// Draws covered skin near a hem a little inwards, so that it never shows through the cloth.
+/// Draws covered skin near a hem a little inwards where it is wanted, so that it never shows through
+/// the cloth.
 pub(super) fn tuck(
     figure: &Figure,
     cuts: &Cuts,
     places: &[Place],
     lod: usize,
-    skin: &mut [Vec3],
-    normals: &[Vec3],
+    (skin, normals): (&mut [Vec3], &[Vec3]),
+    wanted: &[bool],
 ) {
-    for (((p, n), at), &covered) in
-        skin.iter_mut().zip(normals).zip(places).zip(&figure.data().covered)
+    let covered = figure.data().covered.iter().zip(wanted).map(|(c, wanted)| *c != 0 && *wanted);
+    for (((p, n), at), _) in
+        skin.iter_mut().zip(normals).zip(places).zip(covered).filter(|(_, covered)| *covered)
     {
-        let depth = if covered != 0 { cuts.cover(*at) } else { NOT_WORN };
+        let depth = cuts.cover(*at);
         if depth > -0.002 {
-            *p -= *n * (TUCK_M[lod] * step(-0.002, 0.010, depth));
+            *p -= *n * (TUCK_M[lod] * step(-0.002, TUCKED_M, depth));
         }
     }
 }

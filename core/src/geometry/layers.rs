@@ -30,7 +30,7 @@ pub(super) struct Shell<'a> {
     pub lod: usize,
     pub positions: &'a [Vec3],
     pub normals: &'a [Vec3],
-    pub places: Vec<Place>,
+    pub places: &'a [Place],
     /// Joints at rest.
     pub heads_m: &'a [DVec3; JOINT_COUNT],
     pub net: &'a Net,
@@ -43,7 +43,7 @@ impl<'a> Shell<'a> {
         figure: &'a Figure,
         lod: usize,
         (positions, normals): (&'a [Vec3], &'a [Vec3]),
-        places: Vec<Place>,
+        places: &'a [Place],
         heads_m: &'a [DVec3; JOINT_COUNT],
     ) -> Self {
         let rounds = [7, 5, 3, 2, 1][lod];
@@ -178,7 +178,7 @@ pub(super) fn footwear(shell: &Shell<'_>, cuts: &Cuts) -> Footwear {
     let off: Vec<f32> = shell
         .bridge
         .iter()
-        .zip(&shell.places)
+        .zip(shell.places)
         .map(|(b, at)| {
             // A shaft stands off the shin.
             let shaft = 0.006 * step(0.90, 0.78, at.leg);
@@ -229,7 +229,7 @@ pub(super) fn bottom(
     if !tight {
         crease(shell, &mut layer, 0.0012 + 0.25 * cuts.bottom_m);
     }
-    part_legs(&shell.places, &mut layer);
+    part_legs(shell.places, &mut layer);
     layer
 }
 
@@ -293,7 +293,7 @@ pub(super) fn top(
         (0.85 * heights[i]).max(0.003).max(trousers)
     });
     crease(shell, &mut layer, 0.0010 + 0.22 * cuts.top_m);
-    part_legs(&shell.places, &mut layer);
+    part_legs(shell.places, &mut layer);
     keep_over_skirt(shell, &mut layer, skirt);
     layer
 }
@@ -333,7 +333,7 @@ pub(super) fn outer(
     });
     // What is over another layer's creases must not be under them.
     crease(shell, &mut layer, 0.0012 + 0.22 * cuts.outer_m.max(cuts.top_m));
-    part_legs(&shell.places, &mut layer);
+    part_legs(shell.places, &mut layer);
     keep_over_skirt(shell, &mut layer, skirt);
     layer
 }
@@ -347,7 +347,7 @@ fn keep_over_skirt(shell: &Shell<'_>, layer: &mut [Vec3], skirt: &[Vec3]) {
     let line = (shell.head(0), Vec3::NEG_Y);
     let Some(tube) = Tube::new(line, Vec3::Z, (rows / 2, columns), upper.clone()) else { return };
     let top = upper.map(|q| q.y).fold(f32::MIN, f32::max);
-    for (q, at) in layer.iter_mut().zip(&shell.places) {
+    for (q, at) in layer.iter_mut().zip(shell.places) {
         // Between the legs there is no outside.
         if at.arm > 0.02 || at.p.y < -0.04 || q.y > top + 0.02 || q.y < low {
             continue;

@@ -9,16 +9,18 @@
 //! | [`body`] | joints, keypoints, contact points and measures of a body at rest |
 //! | `solve` | sliders of the body model from stature and body mass index |
 //! | [`person`] | a dressed person at rest: skin, eyes, hair and clothes as one mesh |
+//! | `shown` | the skin that is not hidden |
 //! | [`surface`] | what the parts of a person look like |
 //! | `garment`, `refine`, `cut`, `lookup` | clothes, cut from a shell along scalar fields |
 //! | `clothes`, `layers`, `drape`, `skirt` | how garments hang, one over the other |
 //! | `hair`, `beard`, `lashes`, `headwear`, `glasses` | what grows and sits on the head |
 //! | [`skeleton`], [`pose`] | joints, and clips and poses retargeted to a body |
-//! | [`sway`] | joints of cloth that hangs round both legs |
+//! | [`hang`], `sway` | joints of cloth that hangs round both legs |
 //! | [`stance`], `hand` | what joints and fingers are to do |
 //! | [`trunk`], `settle` | keep arms out of trunks, lay bodies on the ground |
 //! | [`points`] | poses single vertices in double precision |
 //! | [`shape`] | primitive shapes |
+//! | `wide` | functions for processors with wider vectors |
 
 mod beard;
 pub mod body;
@@ -29,6 +31,7 @@ mod garment;
 mod glasses;
 mod hair;
 mod hand;
+pub mod hang;
 mod headwear;
 mod lashes;
 mod layers;
@@ -40,10 +43,12 @@ pub mod pose;
 mod refine;
 mod settle;
 pub mod shape;
+mod shown;
 pub mod skeleton;
 mod skirt;
 mod solve;
 pub mod stance;
 pub mod surface;
-pub mod sway;
+mod sway;
 pub mod trunk;
+mod wide;

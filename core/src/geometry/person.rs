@@ -13,6 +13,8 @@ use glam::Vec3;
 use super::body::RestBody;
 use super::cut::{Builder, Surface as Cloth, net_normals};
 use super::garment::{self, Cuts};
+use super::hang::Hang;
+use super::shown::Shown;
 use super::{beard, clothes, glasses, hair, headwear, lashes, phenotype};
 use crate::base::hash::Hasher;
 use crate::library::figure::{Figure, GroupId, LOD_COUNT};
@@ -76,6 +78,8 @@ pub struct Dressed {
     pub mesh: Arc<Mesh>,
     /// Parts in a fixed order; empty ones are left out.
     pub parts: Vec<Part>,
+    /// What moves a skirt or a coat: its joints come after the skeleton's.
+    pub hang: Option<Hang>,
 }
 
 /// A group evaluated for one person at one level of detail.
@@ -90,14 +94,24 @@ pub(super) struct Evaluated<'a> {
 
 impl<'a> Evaluated<'a> {
     pub fn new(figure: &'a Figure, rest: &RestBody, id: GroupId, lod: usize) -> Self {
-        let group = figure.group(id);
-        let level = &group.lods[lod];
-        let range = figure.vertices(id, level.vertices);
-        let positions: Vec<Vec3> = phenotype::evaluate(figure, &rest.shape, range.clone())
+        let range = figure.vertices(id, figure.group(id).lods[lod].vertices);
+        let positions: Vec<Vec3> = phenotype::evaluate(figure, &rest.shape, range)
             .into_iter()
             .map(Vec3::from_array)
             .collect();
         let normals = net_normals(&positions, figure.net(id, lod));
+        Self::of(figure, id, lod, (positions, normals))
+    }
+
+    /// A group's vertices that were evaluated.
+    pub fn of(
+        figure: &'a Figure,
+        id: GroupId,
+        lod: usize,
+        (positions, normals): (Vec<Vec3>, Vec<Vec3>),
+    ) -> Self {
+        let group = figure.group(id);
+        let level = &group.lods[lod];
         let uvs = match id {
             GroupId::Skin => figure.skin_uvs(),
             GroupId::Shell => figure.shell_uvs(),
@@ -109,8 +123,13 @@ impl<'a> Evaluated<'a> {
             triangles: &level.triangles,
             positions,
             normals,
-            skin: &figure.skin()[range],
+            skin: &figure.skin()[figure.vertices(id, level.vertices)],
         }
+    }
+
+    /// Numbers of all its triangles.
+    fn all(&self) -> impl Iterator<Item = u32> + use<> {
+        0..(self.triangles.len() / 3) as u32
     }
 
     pub fn surface(&self) -> Cloth<'_> {
@@ -194,34 +213,33 @@ pub fn dress(figure: &Figure, person: &Person, rest: &RestBody, lod: usize) -> D
     let lod = lod.min(LOD_COUNT - 1);
     let cuts = Cuts::new(&person.outfit);
     let mut out = Parts { builder: Builder::with_room(VERTICES[lod]), parts: Vec::new() };
-    let skin = add_skin(&mut out, figure, rest, &cuts, lod);
+    let skin = add_skin(&mut out, figure, person, (rest, &cuts), lod);
     add_face(&mut out, figure, person, (rest, &skin), lod);
     add_head(&mut out, figure, person, (rest, &skin), lod);
-    clothes::add(&mut out, figure, rest, &cuts, lod);
+    let hang = clothes::add(&mut out, figure, rest, &cuts, lod);
     let mut mesh = out.builder.mesh;
     bound(&mut mesh);
     mesh.shrink_to_fit();
-    Dressed { mesh: Arc::new(mesh), parts: out.parts }
+    Dressed { mesh: Arc::new(mesh), parts: out.parts, hang }
 }
 
 /// The skin that shows; gives back all of it.
 fn add_skin<'a>(
     out: &mut Parts,
     figure: &'a Figure,
-    rest: &RestBody,
-    cuts: &Cuts,
+    person: &Person,
+    (rest, cuts): (&RestBody, &Cuts),
     lod: usize,
 ) -> Evaluated<'a> {
-    let mut skin = Evaluated::new(figure, rest, GroupId::Skin, lod);
-    let count = skin.positions.len() as u32;
-    let places = garment::places(figure, GroupId::Skin, count);
-    let hidden = garment::hidden(figure, cuts, &places, lod);
-    garment::tuck(figure, cuts, &places, lod, &mut skin.positions, &skin.normals);
-    let on_head = figure.on_head();
-    for (kind, wanted) in [(PartKind::Head, true), (PartKind::Skin, false)] {
-        let range = out.builder.add_where(&skin.surface(), |r, v| {
-            on_head[usize::from(r[0])] == wanted && !v.iter().all(|&v| hidden[v])
-        });
+    let count = figure.group(GroupId::Skin).lods[lod].vertices;
+    let places = figure.places(GroupId::Skin, count);
+    let hidden = garment::hidden(figure, cuts, places, lod);
+    let shown = Shown::new(figure, lod, &hidden, hair::above_y(person));
+    let mut skin = shown.evaluate(figure, rest);
+    let on = (&mut skin.positions[..], &skin.normals[..]);
+    garment::tuck(figure, cuts, places, lod, on, &shown.wanted);
+    for (kind, triangles) in [(PartKind::Head, shown.head), (PartKind::Skin, shown.elsewhere)] {
+        let range = out.builder.add_whole(&skin.surface(), triangles.into_iter());
         out.add(kind, range, false);
     }
     skin
@@ -235,7 +253,7 @@ fn add_face(
     lod: usize,
 ) {
     let eyes = Evaluated::new(figure, rest, GroupId::Eyes, lod);
-    let range = out.builder.add_where(&eyes.surface(), |_, _| true);
+    let range = out.builder.add_whole(&eyes.surface(), eyes.all());
     out.add(PartKind::Eyes, range, false);
     if lod == 0 {
         let range = lashes::add(&mut out.builder.mesh, figure, &skin.surface(), &eyes.positions);
@@ -243,7 +261,7 @@ fn add_face(
     }
     if opens_mouth(&person.look) {
         let teeth = Evaluated::new(figure, rest, GroupId::Teeth, lod);
-        let range = out.builder.add_where(&teeth.surface(), |_, _| true);
+        let range = out.builder.add_whole(&teeth.surface(), teeth.all());
         out.add(PartKind::Teeth, range, true);
     }
 }

@@ -9,6 +9,7 @@
 use std::collections::BTreeMap;
 use std::ops::Range;
 
+use super::wide::wide;
 use crate::library::figure::data::{DELTA_UNIT_M, KEYWORDS, NO_KEYWORD};
 use crate::library::figure::{Figure, FigureError};
 use crate::scene::{Body, Sex};
@@ -139,23 +140,37 @@ const CHUNK: usize = 1024;
 /// range it is part of.
 #[must_use]
 pub fn evaluate(figure: &Figure, shape: &Shape, range: Range<usize>) -> Vec<[f32; 3]> {
+    let all = 0..range.len();
+    evaluate_runs(figure, shape, range, &[all])
+}
+
+/// The same for some runs of a range, ascending and counted from its beginning; where there is no
+/// run there is no use in the position.
+pub(super) fn evaluate_runs(
+    figure: &Figure,
+    shape: &Shape,
+    range: Range<usize>,
+    runs: &[Range<usize>],
+) -> Vec<[f32; 3]> {
     let base = figure.template();
-    let mut out = Vec::with_capacity(range.len());
-    let mut start = range.start;
-    while start < range.end {
-        let n = CHUNK.min(range.end - start);
-        let part = start..start + n;
-        let (mut x, mut y, mut z) = ([0.0; CHUNK], [0.0; CHUNK], [0.0; CHUNK]);
-        x[..n].copy_from_slice(&base.x[part.clone()]);
-        y[..n].copy_from_slice(&base.y[part.clone()]);
-        z[..n].copy_from_slice(&base.z[part.clone()]);
-        for &(target, weight) in &shape.macros {
-            let d = figure.macro_target(target);
-            let deltas = [&d.x[part.clone()], &d.y[part.clone()], &d.z[part.clone()]];
-            add_deltas([&mut x[..n], &mut y[..n], &mut z[..n]], deltas, weight * DELTA_UNIT_M);
+    let mut out = vec![[0.0; 3]; range.len()];
+    let (mut x, mut y, mut z) = ([0.0; CHUNK], [0.0; CHUNK], [0.0; CHUNK]);
+    for run in runs {
+        for (i, out) in out[run.clone()].chunks_mut(CHUNK).enumerate() {
+            let (start, n) = (range.start + run.start + i * CHUNK, out.len());
+            let part = start..start + n;
+            x[..n].copy_from_slice(&base.x[part.clone()]);
+            y[..n].copy_from_slice(&base.y[part.clone()]);
+            z[..n].copy_from_slice(&base.z[part.clone()]);
+            for &(target, weight) in &shape.macros {
+                let d = figure.macro_target(target);
+                let deltas = [&d.x[part.clone()], &d.y[part.clone()], &d.z[part.clone()]];
+                add_deltas([&mut x[..n], &mut y[..n], &mut z[..n]], deltas, weight * DELTA_UNIT_M);
+            }
+            for (out, ((x, y), z)) in out.iter_mut().zip(x.iter().zip(&y).zip(&z)) {
+                *out = [*x, *y, *z];
+            }
         }
-        out.extend((0..n).map(|i| [x[i], y[i], z[i]]));
-        start += n;
     }
     for &(target, weight) in &shape.locals {
         let (vertices, d) = figure.face_deltas(target);
@@ -175,24 +190,11 @@ pub fn evaluate(figure: &Figure, shape: &Shape, range: Range<usize>) -> Vec<[f32
     out
 }
 
-/// Adds weighted deltas along three axes. Most of the time that a new body takes is spent here.
-fn add_deltas(sums: [&mut [f32]; 3], deltas: [&[i16]; 3], weight: f32) {
-    #[cfg(target_arch = "x86_64")]
-    {
-        #[target_feature(enable = "avx2")]
-        fn avx2(sums: [&mut [f32]; 3], deltas: [&[i16]; 3], weight: f32) {
-            add_deltas_body(sums, deltas, weight);
-        }
-        if std::arch::is_x86_feature_detected!("avx2") {
-            #[expect(unsafe_code, reason = "a function for a detected instruction set")]
-            // SAFETY: the processor was asked.
-            return unsafe { avx2(sums, deltas, weight) };
-        }
-    }
-    add_deltas_body(sums, deltas, weight);
+wide! {
+    /// Adds weighted deltas along three axes. Most of the time that a new body takes is spent here.
+    fn add_deltas(sums: [&mut [f32]; 3], deltas: [&[i16]; 3], weight: f32) = add_deltas_body
 }
 
-/// Compiled for each instruction set; a product and a sum give the same bits in all of them.
 #[inline(always)]
 fn add_deltas_body(sums: [&mut [f32]; 3], deltas: [&[i16]; 3], weight: f32) {
     for (sums, deltas) in sums.into_iter().zip(deltas) {

@@ -26,28 +26,28 @@ pub(super) struct Refined {
 const NONE: u16 = u16::MAX;
 
 impl Refined {
-    /// The triangles of a surface that have a corner where `field` (by vertex) is not negative.
-    pub fn new(s: &Surface<'_>, field: &[f32]) -> Self {
+    /// Some triangles of a surface with their part of a field (by vertex).
+    pub fn new(s: &Surface<'_>, field: &[f32], triangles: &[u32]) -> Self {
+        // A closed surface has half as many vertices, and pieces have edges and seams.
+        let room = triangles.len() * 2 / 3;
         let mut out = Self {
-            render: Vec::new(),
-            uvs: Vec::new(),
-            triangles: Vec::new(),
-            positions: Vec::new(),
-            normals: Vec::new(),
-            skin: Vec::new(),
-            field: Vec::new(),
-            origin: Vec::new(),
+            render: Vec::with_capacity(room),
+            uvs: Vec::with_capacity(2 * room),
+            triangles: Vec::with_capacity(3 * triangles.len()),
+            positions: Vec::with_capacity(room),
+            normals: Vec::with_capacity(room),
+            skin: Vec::with_capacity(room),
+            field: Vec::with_capacity(room),
+            origin: Vec::with_capacity(room),
         };
         let (mut vertices, mut corners) =
             (vec![NONE; s.positions.len()], vec![NONE; s.render.len()]);
-        for t in s.triangles.chunks_exact(3) {
-            let v = [t[0], t[1], t[2]].map(|r| usize::from(s.render[usize::from(r)]));
-            if v.iter().all(|&v| field[v] < 0.0) {
-                continue;
-            }
-            for (&r, v) in t.iter().zip(v) {
+        let all = s.triangles.as_chunks::<3>().0;
+        for t in triangles.iter().map(|t| all[*t as usize]) {
+            for r in t {
                 let slot = usize::from(r);
                 if corners[slot] == NONE {
+                    let v = usize::from(s.render[slot]);
                     if vertices[v] == NONE {
                         vertices[v] = out.positions.len() as u16;
                         out.positions.push(s.positions[v]);

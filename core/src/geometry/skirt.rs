@@ -1,17 +1,19 @@
 //! Skirts: rings of cloth round both legs, from the waist downwards.
 //!
-//! Each ring is the convex hull of what it goes round, so no leg is outside at rest. It moves with
-//! the legs: beside a leg with that leg, between the legs with the one that is ahead in front and
-//! with the other one behind, which is how cloth spans them in a stride. Tops and trousers are not
-//! known here.
+//! Each ring is the convex hull of what it goes round, so no leg is outside at rest. It hangs on a net
+//! ([`super::hang`]) that starts with the legs: beside a leg with that leg, between the legs with the
+//! one that is ahead in front and with the other one behind, which is how cloth spans them in a
+//! stride. Tops and trousers are not known here.
 
 use glam::Vec3;
 
 use super::cut::{Builder, Rim, Surface, smooth_normals};
 use super::drape::Tube;
+use super::hang::{self, Hang};
 use super::layers::Shell;
 use super::skeleton::{Limb, Side};
 use super::sway::{self, CLOTH_JOINT_COUNT};
+use super::trunk::Trunk;
 use crate::library::figure::{CLOTH_REPEAT, GroupId, SKIRT};
 use crate::library::mesh::SkinVertex;
 
@@ -49,7 +51,13 @@ pub(super) struct Skirt {
     triangles: Vec<u16>,
     /// Metres inside the hem and the front edges, by vertex.
     field: Vec<f32>,
+    columns: usize,
+    /// What it goes round, by vertices of a coarse level of the shell.
+    under: Vec<Vec3>,
 }
+
+/// The finest level of the shell that clearances are taken from.
+const UNDER_LOD: usize = 2;
 
 impl Skirt {
     /// A skirt round the points of a layer of the shell.
@@ -58,17 +66,70 @@ impl Skirt {
         let heights = Heights::find(shell, cut)?;
         let (positions, field) = rings(shell, cut, under, &heights, (rows, columns))?;
         let mut skirt = Self {
-            skin: weights(shell, &positions, columns),
+            skin: vec![SkinVertex::default(); positions.len()],
             normals: Vec::new(),
             render: Vec::new(),
             uvs: Vec::new(),
             triangles: Vec::new(),
             positions,
             field,
+            columns,
+            under: under[..coarse(shell)].to_vec(),
         };
         skirt.weave(rows, columns);
         skirt.normals = smooth_normals(&skirt.positions, &skirt.render, &skirt.triangles);
         Some(skirt)
+    }
+
+    /// The net that moves it, and what is hung on the same.
+    pub fn net(&self, shell: &Shell<'_>, trunk: &Trunk, parted: bool) -> Hang {
+        let rows = self.positions.len() / self.columns;
+        let at = |row: f32, column: f32| {
+            let (r, k) = ((row as usize).min(rows - 2), column as usize);
+            let (t, s) = (row - r as f32, column - k as f32);
+            let p = |r: usize, k: usize| self.positions[r * self.columns + k % self.columns];
+            p(r, k).lerp(p(r, k + 1), s).lerp(p(r + 1, k).lerp(p(r + 1, k + 1), s), t)
+        };
+        let (down, round) = (
+            (rows - 1) as f32 / (hang::ROWS - 1) as f32,
+            self.columns as f32 / hang::COLUMNS as f32,
+        );
+        let points: Vec<Vec3> = (0..hang::ROWS * hang::COLUMNS)
+            .map(|i| ((i / hang::COLUMNS) as f32 * down, (i % hang::COLUMNS) as f32 * round))
+            .map(|(row, column)| at(row, column))
+            .collect();
+        let gaps_m = self.gaps_m(shell, &points);
+        Hang::new(&points, &gaps_m, weights(shell, &points, hang::COLUMNS), trunk, parted)
+    }
+
+    /// Distances of points from what the skirt goes round: from the nearest vertex's tangent plane, or
+    /// from the vertex where that is far.
+    fn gaps_m(&self, shell: &Shell<'_>, points: &[Vec3]) -> Vec<f32> {
+        const FAR_M: f32 = 0.06;
+        let near =
+            Cloud::new(&self.under, (0..self.under.len()).filter(|i| shell.places[*i].arm < 0.02));
+        let gap_m = |p: &Vec3| {
+            let Some(i) = near.nearest(*p) else { return FAR_M };
+            let way = *p - self.under[i];
+            let length = way.length();
+            if length > FAR_M { length } else { way.dot(shell.normals[i]).max(0.0) }
+        };
+        points.iter().map(gap_m).collect()
+    }
+
+    /// Hangs it on a net, but for what lies on the hips, which moves as the body does.
+    pub fn hang_on(&mut self, shell: &Shell<'_>, net: &Hang) {
+        let turn = |i: usize| (i % self.columns) as f32 / self.columns as f32;
+        let is_fixed = |i: usize| net.is_fixed(self.positions[i], turn(i));
+        let rows = self.positions.len() / self.columns;
+        let fixed = |row: &usize| (row * self.columns..(row + 1) * self.columns).any(is_fixed);
+        let upper = (0..rows).filter(fixed).max().map_or(0, |row| row + 1) * self.columns;
+        let body = weights(shell, &self.positions[..upper], self.columns);
+        let skin = self.positions.iter().enumerate().map(|(i, p)| match body.get(i) {
+            Some(body) if is_fixed(i) => *body,
+            _ => net.weights(*p, turn(i)),
+        });
+        self.skin = skin.collect();
     }
 
     /// Triangles and texture coordinates; the last column stands twice, so that the cloth's
@@ -151,7 +212,7 @@ impl Level {
     pub fn find(shell: &Shell<'_>, template_y: f32) -> Option<Self> {
         let (mut n, mut sz, mut sy, mut szz, mut szy) = (0.0f32, 0.0f32, 0.0f32, 0.0f32, 0.0f32);
         let scale = shell.heads_m[0].y as f32 / 0.9;
-        for (p, at) in shell.positions.iter().zip(&shell.places) {
+        for (p, at) in shell.positions.iter().zip(shell.places) {
             let above = at.p.y - template_y;
             if at.arm > 0.0 || above.abs() > 0.035 {
                 continue;
@@ -211,7 +272,7 @@ fn rings(
     let (low, high) = (heights.hem_y - 0.1 * reach, heights.top_y(middle_z) + tilt);
     let points = under
         .iter()
-        .zip(&shell.places)
+        .zip(shell.places)
         .filter(|(q, at)| at.arm < 0.02 && q.y > low && q.y < high)
         .map(|(q, _)| *q);
     let origin = Vec3::new(0.0, high, middle_z);
@@ -256,6 +317,12 @@ fn rings(
         }
     }
     Some((positions, field))
+}
+
+/// How many vertices the shell has at [`UNDER_LOD`], or at the level in hand if that is coarser.
+fn coarse(shell: &Shell<'_>) -> usize {
+    let lods = &shell.figure.group(GroupId::Shell).lods;
+    lods[UNDER_LOD.max(shell.lod)].vertices as usize
 }
 
 /// Joints and weights: those of the nearest places of the shell on the left and on the right, in

@@ -169,7 +169,7 @@ fn head_surface(look: &Look, age_years: f32) -> Surface {
         mask: Mask::Head(shade, whiskers(look.beard)),
         layers: [
             layer(tinted(skin, [0.78, 0.44, 0.43]), 0.40),
-            layer(mix(hair, tinted(skin, [0.5, 0.45, 0.42]), 0.25), 0.65),
+            layer(mix(tinted(hair, [0.66; 3]), tinted(skin, [0.5, 0.45, 0.42]), 0.18), 0.65),
             flushed(look),
             layer(scalp, 0.60),
         ],

@@ -1,17 +1,18 @@
-//! Joints of cloth that hangs round both legs.
+//! What cloth round both legs would do if it had no weight.
 //!
 //! A skirt's front goes with the leg that is ahead and its back with the one that stays behind,
 //! whichever they are: no fixed mixture of the two legs' joints does that. So there are four joints
 //! beyond the skeleton's, two of the thighs and two of the shins, each of which follows the leg
 //! that is farther ahead or farther behind. Rest and posed joints flow in, transforms flow out;
-//! which points hang on them is decided in [`super::skirt`].
+//! which points start with them is decided in [`super::skirt`], where weight takes them in
+//! [`super::hang`].
 
 use glam::{DAffine3, DMat3, DVec3};
 
 use super::pose::PosedSkeleton;
 use super::skeleton::{JOINT_COUNT, Limb, Side, trunk};
 
-/// Joints that a person's mesh may name: the skeleton's, then these.
+/// Joints that a net of cloth starts with: the skeleton's, then these.
 pub const CLOTH_JOINT_COUNT: usize = JOINT_COUNT + 4;
 
 /// The legs share a joint while one is ahead of the other by less than this, metres.

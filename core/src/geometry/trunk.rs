@@ -53,6 +53,10 @@ pub struct Trunk {
     trunk: Outline,
     /// Left and right.
     thighs: [Outline; 2],
+    /// Left and right, from ankle to knee.
+    shins: [Outline; 2],
+    /// Hips and knees at rest, left and right, with the radii of what is round them.
+    balls: [[(DVec3, f64); 2]; 2],
     /// Of elbow and wrist, metres.
     arm_radius_m: [f64; 2],
 }
@@ -120,6 +124,29 @@ impl Outline {
         })
     }
 
+    /// Distance of a point from the outline at rest, negative inside, and the unit way out.
+    fn distance(&self, point_m: DVec3) -> Option<(f64, DVec3)> {
+        let slice = self.at(point_m.y)?;
+        let (a, b) = (slice.half_width_m, slice.half_depth_m);
+        let (x, z) = (point_m.x - slice.center_x_m, point_m.z - slice.center_z_m);
+        let out = DVec3::new(x / (a * a), 0.0, z / (b * b));
+        let length = out.length();
+        if length < 1e-6 {
+            return None;
+        }
+        // As below.
+        let root = ((x / a) * (x / a) + (z / b) * (z / b)).sqrt();
+        Some(((root - 1.0) * root / length, out / length))
+    }
+
+    /// A ball in the outline at a height.
+    fn ball(&self, joint_m: DVec3, y_m: f64) -> (DVec3, f64) {
+        self.at(y_m).map_or((joint_m, 0.0), |slice| {
+            let center_m = DVec3::new(slice.center_x_m, joint_m.y, slice.center_z_m);
+            (center_m, slice.half_width_m.min(slice.half_depth_m))
+        })
+    }
+
     /// How far a sphere is inside at rest, and the way out; model space, metres.
     fn depth(&self, center_m: DVec3, radius_m: f64) -> Option<(f64, DVec3)> {
         let slice = self.at(center_m.y)?;
@@ -157,14 +184,60 @@ impl Trunk {
             let heights = [knee_m + 0.15 * (hip_m - knee_m), hip_m];
             Outline::new(heights, skin.clone(), |joint| joint == hip)
         };
+        let shin = |side: Side| {
+            let (knee, ankle) = (side.joint(Limb::Leg), side.joint(Limb::Foot));
+            Outline::new([heads_m[ankle].y, heads_m[knee].y], skin.clone(), |joint| joint == knee)
+        };
+        let (thighs, shins) = (Side::BOTH.map(thigh), Side::BOTH.map(shin));
+        let balls = Side::BOTH.map(|side| {
+            let thigh = &thighs[side as usize];
+            let [hip_m, knee_m] = [Limb::UpLeg, Limb::Leg].map(|limb| heads_m[side.joint(limb)]);
+            [
+                thigh.ball(hip_m, thigh.high_m - 0.05 * (thigh.high_m - thigh.low_m)),
+                thigh.ball(knee_m, thigh.low_m),
+            ]
+        });
         Self {
-            thighs: Side::BOTH.map(thigh),
+            thighs,
+            shins,
+            balls,
             // Above their joints the thighs are the widest part of the hips.
             trunk: Outline::new(heights, skin, |joint| {
                 joint <= trunk::SPINE2 || Side::BOTH.iter().any(|s| s.joint(Limb::UpLeg) == joint)
             }),
             arm_radius_m,
         }
+    }
+
+    /// Trunk and legs of a posed skeleton, for what hangs round them.
+    #[must_use]
+    pub fn solids(&self, skeleton: &PosedSkeleton) -> Solids<'_> {
+        let bones = &skeleton.model_from_rest;
+        let outline = |outline, joint: usize| (outline, bones[joint], bones[joint].inverse());
+        let of = |side: Side, limb: Limb| side.joint(limb);
+        let [left, right] = Side::BOTH;
+        let spine = |joint: usize| outline(&self.trunk, joint);
+        let outlines = [
+            outline(&self.thighs[0], of(left, Limb::UpLeg)),
+            outline(&self.thighs[1], of(right, Limb::UpLeg)),
+            outline(&self.shins[0], of(left, Limb::Leg)),
+            outline(&self.shins[1], of(right, Limb::Leg)),
+            spine(trunk::HIPS),
+            spine(trunk::SPINE1),
+        ];
+        let balls = Side::BOTH.map(|side| {
+            let [hip, knee] = self.balls[side as usize];
+            let thigh = bones[of(side, Limb::UpLeg)];
+            // Between the trunk and the thigh, and between thigh and shin.
+            let middle = |p: DVec3, other: DAffine3| {
+                (thigh.transform_point3(p) + other.transform_point3(p)) * 0.5
+            };
+            [
+                (middle(hip.0, bones[trunk::HIPS]), hip.1),
+                (middle(knee.0, bones[of(side, Limb::Leg)]), knee.1),
+            ]
+        });
+        Solids { outlines, balls }
     }
 
     /// Turns both arms of a posed skeleton out of the trunk.
@@ -262,6 +335,44 @@ impl Trunk {
             }
         }
         best
+    }
+}
+
+/// Trunk and legs of a posed body.
+pub struct Solids<'a> {
+    /// With the joint that moves each, and its inverse.
+    outlines: [(&'a Outline, DAffine3, DAffine3); 6],
+    /// Centre and radius of hips and knees, left and right.
+    balls: [[(DVec3, f64); 2]; 2],
+}
+
+impl Solids<'_> {
+    /// Distance of a point from the nearest of them, negative inside; model space, metres.
+    #[must_use]
+    pub fn distance_m(&self, point_m: DVec3) -> f64 {
+        self.nearest(point_m).map_or(f64::MAX, |n| n.0)
+    }
+
+    /// How a point has to move for a distance; model space, metres.
+    #[must_use]
+    pub fn way_out_m(&self, point_m: DVec3, clear_m: f64) -> DVec3 {
+        match self.nearest(point_m) {
+            Some((distance_m, out)) if distance_m < clear_m => out * (clear_m - distance_m),
+            _ => DVec3::ZERO,
+        }
+    }
+
+    fn nearest(&self, point_m: DVec3) -> Option<(f64, DVec3)> {
+        let outlines = self.outlines.iter().filter_map(|(outline, model_from_rest, inverse)| {
+            let (distance_m, out) = outline.distance(inverse.transform_point3(point_m))?;
+            Some((distance_m, model_from_rest.transform_vector3(out)))
+        });
+        let balls = self.balls.iter().flatten().filter(|ball| ball.1 > 0.0).map(|ball| {
+            let way = point_m - ball.0;
+            let length = way.length().max(1e-9);
+            (length - ball.1, way / length)
+        });
+        outlines.chain(balls).min_by(|a, b| a.0.total_cmp(&b.0))
     }
 }
 

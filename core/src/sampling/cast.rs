@@ -14,10 +14,15 @@ use crate::document::cast::{
 use crate::document::{People, Problem};
 use crate::scene::{Body, Headwear, Look, Outfit};
 
-/// What lasts of a person, complete: listed, it gives the same person in every config.
+/// The pattern of cloth that has none.
+pub(super) const PLAIN: &str = "none";
+
+/// What lasts of a person, complete: listed, it gives the same person in every config. Colours and
+/// patterns of clothes are those of `dyed`.
 pub(super) fn member(
     name: Option<&str>,
     (body, look, outfit): (&Body, &Look, &Outfit),
+    dyed: &MemberWardrobe,
     catalogue: &Catalogue,
 ) -> Member {
     Member {
@@ -25,7 +30,7 @@ pub(super) fn member(
         name: name.map(str::to_owned),
         body: member_body(body),
         look: member_look(look, catalogue),
-        wardrobe: member_wardrobe(outfit),
+        wardrobe: member_wardrobe(outfit, dyed),
     }
 }
 
@@ -77,38 +82,90 @@ fn member_look(look: &Look, catalogue: &Catalogue) -> MemberLook {
     }
 }
 
-/// Colours and patterns are left out: they do not last.
-fn member_wardrobe(outfit: &Outfit) -> MemberWardrobe {
+/// The colours and patterns of an outfit alone.
+pub(super) fn dyed(outfit: &Outfit) -> MemberWardrobe {
     let Outfit { top, bottom, outer, shoes } = outfit;
+    let color = |rgb: [f64; 3]| Some(FixedColor::from_linear(rgb));
+    let pattern = |id: &Option<String>| Some(id.clone().unwrap_or_else(|| PLAIN.to_owned()));
+    MemberWardrobe {
+        top: MemberTop {
+            color: color(top.color),
+            pattern: pattern(&top.texture),
+            hue_offset_deg: Some(top.hue_offset_deg),
+            ..MemberTop::default()
+        },
+        bottom: MemberBottom {
+            color: color(bottom.color),
+            pattern: pattern(&bottom.texture),
+            hue_offset_deg: Some(bottom.hue_offset_deg),
+            ..MemberBottom::default()
+        },
+        outer: MemberOuter {
+            color: color(outer.color),
+            pattern: pattern(&outer.texture),
+            hue_offset_deg: Some(outer.hue_offset_deg),
+            ..MemberOuter::default()
+        },
+        shoes: MemberShoes {
+            color: color(shoes.color),
+            sock_color: color(shoes.sock_color),
+            ..MemberShoes::default()
+        },
+    }
+}
+
+fn member_wardrobe(outfit: &Outfit, dyed: &MemberWardrobe) -> MemberWardrobe {
+    let Outfit { top, bottom, outer, shoes } = outfit;
+    let dyed = dyed.clone();
     MemberWardrobe {
         top: MemberTop {
             kind: Some(top.kind),
             sleeve: Some(top.sleeve),
             neckline: Some(top.neckline),
             looseness_m: Some(top.looseness_m),
+            ..dyed.top
         },
         bottom: MemberBottom {
             kind: Some(bottom.kind),
             length: Some(bottom.length),
             flare: Some(bottom.flare),
             looseness_m: Some(bottom.looseness_m),
+            ..dyed.bottom
         },
         outer: MemberOuter {
             kind: Some(outer.kind),
             open: Some(outer.open),
             looseness_m: Some(outer.looseness_m),
+            ..dyed.outer
         },
-        shoes: MemberShoes { kind: Some(shoes.kind), socks: Some(shoes.socks) },
+        shoes: MemberShoes { kind: Some(shoes.kind), socks: Some(shoes.socks), ..dyed.shoes },
     }
 }
 
-/// The shapes and units of listed faces that a catalogue does not hold, and files that nobody has
-/// read.
+/// The shapes and units of listed faces and the patterns of cloth that a catalogue does not hold, and
+/// files that nobody has read.
 pub(super) fn check(people: &People, catalogue: &Catalogue, problems: &mut Vec<Problem>) {
     for (i, member) in people.cast.iter().enumerate() {
         if member.file.is_some() {
             let what = "the file was not read; load the config from its own file";
             problems.push(Problem::new(format!("people.cast[{i}].file"), what));
+        }
+        let wardrobe = &member.wardrobe;
+        let patterns = [
+            ("top", &wardrobe.top.pattern),
+            ("bottom", &wardrobe.bottom.pattern),
+            ("outer", &wardrobe.outer.pattern),
+        ];
+        let known = &catalogue.cloth_patterns;
+        for (garment, id) in
+            patterns.iter().filter_map(|(garment, id)| Some((garment, id.as_ref()?)))
+        {
+            if id != PLAIN && !known.contains(id) {
+                let path = format!("people.cast[{i}].wardrobe.{garment}.pattern");
+                let problem = Problem::new(path, format!("there is no cloth pattern \"{id}\""));
+                let all = known.iter().map(String::as_str).chain([PLAIN]);
+                problems.push(problem.did_you_mean(id, all));
+            }
         }
         let groups = [
             ("face", &member.look.face, &catalogue.face_targets),

@@ -151,7 +151,7 @@ impl Sampler {
             people::people(&document.people, catalogue, faces, Draws::new(document.seed, frame));
         let member = |p: Person| {
             let what = (&p.body, &p.look, &p.outfit);
-            (p.slot + 1, cast::member(p.name.as_deref(), what, catalogue))
+            (p.slot + 1, cast::member(p.name.as_deref(), what, &cast::dyed(&p.outfit), catalogue))
         };
         people.into_iter().map(member).collect()
     }

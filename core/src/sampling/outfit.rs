@@ -3,16 +3,17 @@
 use std::sync::LazyLock;
 
 use super::background::asset;
+use super::cast::PLAIN;
 use super::people::{PersonTraits, Source};
 use super::value::{color, flag, item, number};
 use super::{keys, outfit_table, quantile};
 use crate::base::rng::{Draw, Key};
-use crate::document::cast::MemberWardrobe;
+use crate::document::cast::{FixedColor, MemberWardrobe};
 use crate::document::{self, Auto, Choice, Color, ColorLaw, OutfitRow, Param, Wardrobe};
 use crate::scene::{Bottom, BottomKind, Outer, OuterKind, Outfit, Shoes, Top, TopKind};
 
-/// The cut of the clothes lasts as long as the person does, and what is known of it stays; their
-/// colours and patterns are drawn anew.
+/// The cut of the clothes lasts as long as the person does; their colours and patterns are drawn
+/// anew. What is known stays.
 pub(super) fn outfit(
     wardrobe: &Wardrobe,
     known: &MemberWardrobe,
@@ -31,12 +32,18 @@ pub(super) fn outfit(
         outer: drawing.outer(&wardrobe.outer, row),
         shoes: Shoes {
             kind: drawing.kind(known.shoes.kind, &shoes.kind, &row.shoes, keys::SHOE_KIND),
-            color: color(&shoes.color, here.of(keys::SHOE_COLOR)),
+            color: known
+                .shoes
+                .color
+                .map_or_else(|| color(&shoes.color, here.of(keys::SHOE_COLOR)), FixedColor::linear),
             socks: known
                 .shoes
                 .socks
                 .unwrap_or_else(|| number(&shoes.socks, lasting.of(keys::SOCKS))),
-            sock_color: color(&shoes.sock_color, here.of(keys::SOCK_COLOR)),
+            sock_color: known.shoes.sock_color.map_or_else(
+                || color(&shoes.sock_color, here.of(keys::SOCK_COLOR)),
+                FixedColor::linear,
+            ),
         },
     }
 }
@@ -100,16 +107,20 @@ impl Drawing<'_> {
             looseness_m: known.looseness_m.unwrap_or_else(|| {
                 given_or(&top.looseness_m, &looseness_m, cut(keys::TOP_LOOSENESS))
             }),
-            color: self.dye(&top.color, &CLOTH, keys::TOP_COLOR),
-            texture: asset(&top.pattern, self.patterns, pattern).or_else(|| {
-                // What is not printed is knitted.
-                let knitted: Vec<_> =
-                    self.patterns.iter().filter(|id| id.contains("/knit/")).collect();
-                let at = pattern.lane(2).uniform() * knitted.len() as f64;
-                let id = knitted.get(at as usize).filter(|_| kind == TopKind::Sweater);
-                id.map(|id| (*id).clone())
+            color: self.dye(known.color, &top.color, &CLOTH, keys::TOP_COLOR),
+            texture: printed(known.pattern.as_ref(), || {
+                asset(&top.pattern, self.patterns, pattern).or_else(|| {
+                    // What is not printed is knitted.
+                    let knitted: Vec<_> =
+                        self.patterns.iter().filter(|id| id.contains("/knit/")).collect();
+                    let at = pattern.lane(2).uniform() * knitted.len() as f64;
+                    let id = knitted.get(at as usize).filter(|_| kind == TopKind::Sweater);
+                    id.map(|id| (*id).clone())
+                })
             }),
-            hue_offset_deg: number(&top.hue_offset_deg, self.here.of(keys::TOP_HUE)),
+            hue_offset_deg: known
+                .hue_offset_deg
+                .unwrap_or_else(|| number(&top.hue_offset_deg, self.here.of(keys::TOP_HUE))),
         }
     }
 
@@ -137,11 +148,13 @@ impl Drawing<'_> {
         };
         let jeans = kind == BottomKind::Jeans;
         // Denim is denim, whatever other cloths are printed with.
-        let texture = if jeans {
-            self.patterns.iter().find(|id| id.contains("/denim/")).cloned()
-        } else {
-            asset(&bottom.pattern, self.patterns, self.here.of(keys::BOTTOM_PATTERN))
-        };
+        let texture = printed(known.pattern.as_ref(), || {
+            if jeans {
+                self.patterns.iter().find(|id| id.contains("/denim/")).cloned()
+            } else {
+                asset(&bottom.pattern, self.patterns, self.here.of(keys::BOTTOM_PATTERN))
+            }
+        });
         let colors = if jeans { &DENIM } else { &CLOTH };
         Bottom {
             kind,
@@ -150,9 +163,11 @@ impl Drawing<'_> {
             looseness_m: known.looseness_m.unwrap_or_else(|| {
                 given_or(&bottom.looseness_m, &loose, cut(keys::BOTTOM_LOOSENESS))
             }),
-            color: self.dye(&bottom.color, colors, keys::BOTTOM_COLOR),
+            color: self.dye(known.color, &bottom.color, colors, keys::BOTTOM_COLOR),
             texture,
-            hue_offset_deg: number(&bottom.hue_offset_deg, self.here.of(keys::BOTTOM_HUE)),
+            hue_offset_deg: known
+                .hue_offset_deg
+                .unwrap_or_else(|| number(&bottom.hue_offset_deg, self.here.of(keys::BOTTOM_HUE))),
         }
     }
 
@@ -171,19 +186,34 @@ impl Drawing<'_> {
             looseness_m: known.looseness_m.unwrap_or_else(|| {
                 given_or(&outer.looseness_m, &loose, self.lasting.of(keys::OUTER_LOOSENESS))
             }),
-            color: self.dye(&outer.color, &COAT, keys::OUTER_COLOR),
-            texture: asset(&outer.pattern, self.patterns, self.here.of(keys::OUTER_PATTERN)),
-            hue_offset_deg: number(&outer.hue_offset_deg, self.here.of(keys::OUTER_HUE)),
+            color: self.dye(known.color, &outer.color, &COAT, keys::OUTER_COLOR),
+            texture: printed(known.pattern.as_ref(), || {
+                asset(&outer.pattern, self.patterns, self.here.of(keys::OUTER_PATTERN))
+            }),
+            hue_offset_deg: known
+                .hue_offset_deg
+                .unwrap_or_else(|| number(&outer.hue_offset_deg, self.here.of(keys::OUTER_HUE))),
         }
     }
 
-    fn dye(&self, given: &Auto<Color>, otherwise: &Color, key: Key) -> [f64; 3] {
+    fn dye(
+        &self,
+        known: Option<FixedColor>,
+        given: &Auto<Color>,
+        otherwise: &Color,
+        key: Key,
+    ) -> [f64; 3] {
         let law = match given {
             Auto::Auto(_) => otherwise,
             Auto::Given(law) => law,
         };
-        color(law, self.here.of(key))
+        known.map_or_else(|| color(law, self.here.of(key)), FixedColor::linear)
     }
+}
+
+/// The pattern of a cloth, if any: the known one, or else one that is drawn.
+fn printed(known: Option<&String>, drawn: impl FnOnce() -> Option<String>) -> Option<String> {
+    known.map_or_else(drawn, |id| Some(id.clone()).filter(|id| id != PLAIN))
 }
 
 fn given_or(given: &Auto<Param>, otherwise: &Param, draw: Draw) -> f64 {

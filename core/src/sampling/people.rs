@@ -58,8 +58,11 @@ pub(super) fn member(
     let company = Company { people, catalogue, faces };
     let lasting = Source::of_identity(seed, id, id);
     let (body, look, outfit) = company.person(Some(id), lasting, lasting);
-    let name = company.listed(id).and_then(|m| m.name.as_deref());
-    cast::member(name, (&body, &look, &outfit), catalogue)
+    let nobody = Member::default();
+    let known = company.listed(id).unwrap_or(&nobody);
+    // Colours and patterns that are drawn do not last.
+    let what = (&body, &look, &outfit);
+    cast::member(known.name.as_deref(), what, &known.wardrobe, catalogue)
 }
 
 /// What people are drawn from.

@@ -2,8 +2,9 @@
 //!
 //! A [`Member`] holds settled numbers, no laws. Whatever it leaves out is drawn from the config's
 //! laws as it would be for the identity whose place it takes; one that leaves nothing out is the
-//! same person in every config. Colours and patterns of clothes, pose and place do not belong to
-//! it: they are drawn anew each time. [`mod@file`] reads members that lie in files of their own.
+//! same person in every config. Pose and place do not belong to it. Colours and patterns of clothes
+//! are fixed where they are given and drawn anew each time otherwise. [`mod@file`] reads members
+//! that lie in files of their own.
 
 use std::collections::BTreeMap;
 
@@ -36,7 +37,7 @@ pub struct Member {
     /// Skin, hair, eyes and face.
     #[serde(skip_serializing_if = "MemberLook::is_empty")]
     pub look: MemberLook,
-    /// Cut of the clothes.
+    /// Clothes.
     #[serde(skip_serializing_if = "MemberWardrobe::is_empty")]
     pub wardrobe: MemberWardrobe,
 }
@@ -150,7 +151,7 @@ values! {
     }
 }
 
-/// Cut of the clothes.
+/// Clothes.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct MemberWardrobe {
@@ -194,6 +195,12 @@ values! {
         neckline: f64,
         /// Gap between skin and cloth.
         looseness_m: f64,
+        /// Colour of the cloth.
+        color: FixedColor,
+        /// Cloth pattern id; `"none"` for plain.
+        pattern: String,
+        /// Rotation of the hue of the cloth.
+        hue_offset_deg: f64,
     }
 }
 
@@ -208,6 +215,12 @@ values! {
         flare: f64,
         /// Gap between skin and cloth.
         looseness_m: f64,
+        /// Colour of the cloth.
+        color: FixedColor,
+        /// Cloth pattern id; `"none"` for plain.
+        pattern: String,
+        /// Rotation of the hue of the cloth.
+        hue_offset_deg: f64,
     }
 }
 
@@ -220,6 +233,12 @@ values! {
         open: bool,
         /// Gap between the cloth under it and its own.
         looseness_m: f64,
+        /// Colour of the cloth.
+        color: FixedColor,
+        /// Cloth pattern id; `"none"` for plain.
+        pattern: String,
+        /// Rotation of the hue of the cloth.
+        hue_offset_deg: f64,
     }
 }
 
@@ -228,8 +247,12 @@ values! {
     MemberShoes {
         /// Which.
         kind: ShoeKind,
+        /// Their colour.
+        color: FixedColor,
         /// Upper end of socks over the ankle, as a share of the lower leg; 0 for none that show.
         socks: f64,
+        /// Colour of the socks.
+        sock_color: FixedColor,
     }
 }
 

@@ -87,8 +87,19 @@ fn member(c: &mut Check, path: &str, member: &Member) {
         ("bottom.looseness_m", bottom.looseness_m, LOOSENESS),
         ("outer.looseness_m", outer.looseness_m, LOOSENESS),
         ("shoes.socks", wardrobe.shoes.socks, SHARE),
+        ("top.hue_offset_deg", top.hue_offset_deg, super::ANGLE),
+        ("bottom.hue_offset_deg", bottom.hue_offset_deg, super::ANGLE),
+        ("outer.hue_offset_deg", outer.hue_offset_deg, super::ANGLE),
     ];
     numbers(c, &at("wardrobe"), &cuts);
+    let dyes = [
+        ("top.color", top.color),
+        ("bottom.color", bottom.color),
+        ("outer.color", outer.color),
+        ("shoes.color", wardrobe.shoes.color),
+        ("shoes.sock_color", wardrobe.shoes.sock_color),
+    ];
+    colors(c, &at("wardrobe"), &dyes);
 }
 
 /// Numbers of a group, those that are given.
@@ -97,6 +108,19 @@ fn numbers(c: &mut Check, path: &str, all: &[(&str, Option<f64>, Range)]) {
         if let Some(value) = value {
             c.number(&format!("{path}.{name}"), *value, *range);
         }
+    }
+}
+
+/// Colours of a group, those that are given.
+fn colors(c: &mut Check, path: &str, all: &[(&str, Option<FixedColor>)]) {
+    for (name, color) in all {
+        match color {
+            None => true,
+            Some(FixedColor::Srgb(rgb)) => c.numbers(&format!("{path}.{name}"), rgb, SHARE),
+            Some(FixedColor::Other(FixedColorOther::Linear(rgb))) => {
+                c.numbers(&format!("{path}.{name}.linear"), rgb, SHARE)
+            }
+        };
     }
 }
 
@@ -128,21 +152,13 @@ fn body(c: &mut Check, path: &str, body: &MemberBody) {
 }
 
 fn look(c: &mut Check, path: &str, look: &MemberLook) {
-    let colors = [
+    let all = [
         ("skin", look.skin),
         ("hair_color", look.hair_color),
         ("headwear_color", look.headwear_color),
         ("iris_color", look.iris_color),
     ];
-    for (name, color) in colors {
-        match color {
-            None => true,
-            Some(FixedColor::Srgb(rgb)) => c.numbers(&format!("{path}.{name}"), &rgb, SHARE),
-            Some(FixedColor::Other(FixedColorOther::Linear(rgb))) => {
-                c.numbers(&format!("{path}.{name}.linear"), &rgb, SHARE)
-            }
-        };
-    }
+    colors(c, path, &all);
     numbers(c, path, &[("freckles", look.freckles, SHARE), ("flush", look.flush, SHARE)]);
     for (name, amounts) in [("face", &look.face), ("expression", &look.expression)] {
         for (target, amount) in amounts.iter().flatten() {

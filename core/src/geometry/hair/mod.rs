@@ -64,11 +64,7 @@ impl Head {
     ) -> Self {
         let scalp = Scalp::new(figure, rest);
         let clothes_m = 0.014 + (person.outfit.top.looseness_m as f32).clamp(0.0, 0.06);
-        let hangs = style::form(person.look.hair)
-            .is_some_and(|f| f.sheet_y.is_some() || f.tail != Tail::None);
-        let hangs = hangs || person.look.headwear.kind == HeadwearKind::Headscarf;
-        let above_y = if hangs { 0.36 } else { 0.56 };
-        let near = Near::new(figure, &scalp.frame, lod, skin, (above_y, clothes_m));
+        let near = Near::new(figure, &scalp.frame, lod, skin, (above_y(person), clothes_m));
         let joint = |name: &str| {
             let names = figure.joint_names();
             names.iter().position(|n| n == name).unwrap_or(0) as u8
@@ -106,6 +102,14 @@ impl Head {
     }
 }
 
+/// Height on the template above which a person's hair or headwear may lie on the skin.
+pub(super) fn above_y(person: &Person) -> f32 {
+    let form = style::form(person.look.hair);
+    let hangs = form.is_some_and(|f| f.sheet_y.is_some() || f.tail != Tail::None)
+        || person.look.headwear.kind == HeadwearKind::Headscarf;
+    if hangs { 0.36 } else { 0.56 }
+}
+
 /// A number of the person's own: the same whatever the person wears.
 fn seed(person: &Person) -> u64 {
     let b = &person.body;
@@ -132,9 +136,11 @@ pub(super) fn add(mesh: &mut Mesh, head: &Head, style: HairStyle) -> [Range<u32>
         }
         gathered::add_cores(&grower, mesh);
         ends[0] = mesh.triangles.len() as u32;
+        let locks = form.locks.as_ref().filter(|_| !grower.alone());
+        let areas = locks.map(|_| head.scalp.areas(|root| grower.density(root)));
         for (tone, end) in [(0, 1), (1, 2)] {
-            if let (Some(locks), Some(_)) = (&form.locks, LEVELS.get(head.lod)) {
-                grower.locks(mesh, locks, tone);
+            if let (Some(locks), Some(areas)) = (locks, &areas) {
+                grower.locks(mesh, locks, tone, areas);
                 gathered::add_locks(&grower, mesh, tone);
             }
             ends[end] = mesh.triangles.len() as u32;
@@ -315,11 +321,10 @@ impl Grower<'_> {
     }
 
     /// Locks of one of two tones: most of them, and the few light ones.
-    fn locks(&self, mesh: &mut Mesh, locks: &Locks, tone: usize) {
+    fn locks(&self, mesh: &mut Mesh, locks: &Locks, tone: usize, areas: &[f32]) {
         let (share, wide, fine) = LEVELS[self.head.lod];
         let count = (locks.count as f32 * share) as usize;
         let points = ((locks.points as f32 * fine) as usize).max(3);
-        let areas = self.head.scalp.areas(|root| self.density(root));
         let skin = |p: Vec3| self.skin(p);
         for i in 0..count {
             let mut dice = Dice::new(self.head.seed, 16 + i as u64);
@@ -327,7 +332,7 @@ impl Grower<'_> {
                 continue;
             }
             let share = (i as f32 + dice.unit()) / count as f32;
-            let root = self.head.scalp.drawn(&areas, share, [dice.unit(), dice.unit()]);
+            let root = self.head.scalp.drawn(areas, share, [dice.unit(), dice.unit()]);
             let mut path = self.line(locks, &root, &mut dice).resampled(points);
             let s = self.scale();
             if let Some((radius, turn)) = locks.curl {

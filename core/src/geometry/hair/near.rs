@@ -10,6 +10,7 @@ use glam::Vec3;
 use super::scalp::Frame;
 use crate::geometry::cut::net_normals;
 use crate::geometry::garment::step;
+use crate::geometry::wide::wide;
 use crate::library::figure::{Figure, GroupId, LOD_COUNT};
 
 /// The finest level of the skin that hair lies on: what is finer looks no better.
@@ -92,7 +93,10 @@ impl Near {
     }
 
     fn cell(&self, p: Vec3) -> [i32; 3] {
-        let c = ((p - self.low) / self.cell_m).floor().to_array().map(|x| x as i32);
+        let c = ((p - self.low) / self.cell_m).to_array().map(|x| {
+            let towards_zero = x as i32;
+            towards_zero - i32::from(x < towards_zero as f32)
+        });
         std::array::from_fn(|i| c[i].clamp(-3, self.size[i] as i32 + 2))
     }
 
@@ -107,6 +111,11 @@ impl Near {
 
     /// From the samples of the cells at most so far away.
     fn within(&self, p: Vec3, cells: i32) -> Option<(f32, Vec3)> {
+        wide_within(self, p, cells)
+    }
+
+    #[inline(always)]
+    fn within_body(&self, p: Vec3, cells: i32) -> Option<(f32, Vec3)> {
         let reach = self.cell_m * cells as f32;
         let (reach2, soft2) = (reach * reach, 0.1 * self.cell_m * self.cell_m);
         let center = self.cell(p);
@@ -123,8 +132,10 @@ impl Near {
                 }
                 let from = self.start[self.index([x, y, zs.0])] as usize;
                 let to = self.start[self.index([x, y, zs.1 - 1]) + 1] as usize;
-                for first in (from..to).step_by(LANES) {
+                let mut first = from;
+                while first < to {
                     self.add_eight(&mut sums, p, (first, to - first), (1.0 / reach2, soft2));
+                    first += LANES;
                 }
             }
         }
@@ -163,6 +174,10 @@ impl Near {
             sums.0[4][i] += w * n[2][i];
         }
     }
+}
+
+wide! {
+    fn wide_within(near: &Near, p: Vec3, cells: i32) -> Option<(f32, Vec3)> = Near::within_body
 }
 
 /// Weights, weighted distances and the weighted normals' three axes, lane by lane.

@@ -117,7 +117,7 @@ fn every_mesh_is_sound() {
     let figure = Figure::built_in().unwrap();
     for i in 0..15 {
         for lod in 0..LOD_COUNT {
-            let Dressed { mesh, parts } = dressed(&figure, i, lod);
+            let Dressed { mesh, parts, .. } = dressed(&figure, i, lod);
             let n = mesh.positions.len();
             assert!([mesh.normals.len(), mesh.uvs.len(), mesh.skin.len()] == [n; 3]);
             assert!(mesh.triangles.iter().flat_map(|t| t.get()).all(|v| (v as usize) < n));
@@ -197,10 +197,10 @@ fn with_clothes(
     let rest = rest_body(figure, &p.body, &p.look.face).unwrap();
     let cuts = Cuts::new(&p.outfit);
     let body = Evaluated::new(figure, &rest, GroupId::Shell, lod);
-    let places = garment::places(figure, GroupId::Shell, body.positions.len() as u32);
+    let places = figure.places(GroupId::Shell, body.positions.len() as u32);
     let on = (&body.positions[..], &body.normals[..]);
     let shell = Shell::new(figure, lod, on, places, &rest.heads_m);
-    look(&body, &shell, &Worn::new(&shell, &cuts), &cuts, &rest);
+    look(&body, &shell, &Worn::new(&shell, &cuts, &rest.trunk), &cuts, &rest);
 }
 
 /// Skin that is drawn although it is under a garment lies below the cloth: going out along
@@ -212,9 +212,10 @@ fn no_skin_shows_through_the_clothes() {
     for (i, lod) in (0..14).flat_map(|i| (0..LOD_COUNT).map(move |lod| (i, lod))) {
         with_clothes(&figure, i, lod, |body, _, worn, cuts, rest| {
             let mut skin = Evaluated::new(&figure, rest, GroupId::Skin, lod);
-            let on_skin = garment::places(&figure, GroupId::Skin, skin.positions.len() as u32);
-            let hidden = garment::hidden(&figure, cuts, &on_skin, lod);
-            garment::tuck(&figure, cuts, &on_skin, lod, &mut skin.positions, &skin.normals);
+            let on_skin = figure.places(GroupId::Skin, skin.positions.len() as u32);
+            let hidden = garment::hidden(&figure, cuts, on_skin, lod);
+            let on = (&mut skin.positions[..], &skin.normals[..]);
+            garment::tuck(&figure, cuts, on_skin, lod, on, &vec![true; on_skin.len()]);
             let mut layers = vec![(Piece::Top, triangles_of(body, &worn.top))];
             if cuts.wears(Piece::Socks) {
                 layers.push((Piece::Socks, triangles_of(body, &worn.feet.socks)));
@@ -253,6 +254,36 @@ fn no_skin_shows_through_the_clothes() {
             assert!(seen >= least, "person {i} level {lod}: only {seen} vertices were tested");
             assert!(outside.is_empty(), "person {i} level {lod}: {outside:?} of {seen}");
         });
+    }
+}
+
+/// What is left out for being hidden changes nothing of what is drawn, hair that lies on it
+/// included.
+#[test]
+fn skin_that_is_not_evaluated_is_not_missed() {
+    let figure = Figure::built_in().unwrap();
+    for (i, lod) in (0..6).flat_map(|i| (0..LOD_COUNT).map(move |lod| (i, lod))) {
+        let p = Person { look: groomed(HairStyle::LongWavy, 0, 0, 0).look, ..person(i) };
+        let rest = rest_body(&figure, &p.body, &p.look.face).unwrap();
+        let all = Evaluated::new(&figure, &rest, GroupId::Skin, lod);
+        let places = figure.places(GroupId::Skin, all.positions.len() as u32);
+        let hidden = garment::hidden(&figure, &Cuts::new(&p.outfit), places, lod);
+        let shown = Shown::new(&figure, lod, &hidden, hair::above_y(&p));
+        let some = shown.evaluate(&figure, &rest);
+        let wanted: Vec<usize> = (0..hidden.len()).filter(|v| shown.wanted[*v]).collect();
+        assert!(wanted.len() < hidden.len(), "person {i} level {lod}");
+        for v in wanted {
+            assert_eq!(some.positions[v], all.positions[v], "person {i} level {lod}");
+            assert_eq!(some.normals[v], all.normals[v], "person {i} level {lod}");
+        }
+        let head = |skin: &[Vec3]| hair::Head::new(&figure, &p, &rest, lod, skin);
+        let (one, other) = (head(&all.positions), head(&some.positions));
+        for k in 0..400 {
+            let at = |n: usize, size: f32| (k * n % 97) as f32 / 97.0 * size;
+            let local = Vec3::new(at(31, 0.3) - 0.15, 0.40 + at(53, 0.5), at(71, 0.3) - 0.12);
+            let q = one.scalp.frame.world(local);
+            assert_eq!(one.near.surface(q), other.near.surface(q), "person {i} level {lod}");
+        }
     }
 }
 

@@ -13,6 +13,7 @@ pub mod data;
 mod eye;
 mod maps;
 mod net;
+mod place;
 pub mod predict;
 mod seams;
 mod stream;
@@ -25,6 +26,7 @@ pub use data::{FigureData, Group, GroupId, LOD_COUNT, Lod};
 use data::{GROUP_COUNT, KEYPOINT_VERTICES, MAX_FACTORS};
 pub use maps::{CLOTH_REPEAT, Freckles, NEUTRAL_TINT, SKIRT};
 pub use net::{Neighbour, Net};
+pub use place::Place;
 pub use seams::Sewn;
 pub use tallness::Tallness;
 pub use whiskers::{ScalpShade, Whiskers, beard, wreath};
@@ -78,6 +80,8 @@ pub struct Figure {
     painted: Painted,
     /// Of each group and level of detail, made when first asked for.
     nets: [[OnceLock<Net>; LOD_COUNT]; GROUP_COUNT],
+    /// Of each group.
+    places: [OnceLock<Vec<Place>>; GROUP_COUNT],
     tallness: OnceLock<Tallness>,
     creases: OnceLock<Vec<f32>>,
     eye_mask: Arc<Texture>,
@@ -169,6 +173,7 @@ impl Figure {
             shell_uvs,
             painted: Painted::default(),
             nets: Default::default(),
+            places: Default::default(),
             tallness: OnceLock::new(),
             creases: OnceLock::new(),
             eye_mask,
@@ -192,6 +197,16 @@ impl Figure {
     #[must_use]
     pub fn net(&self, id: GroupId, lod: usize) -> &Net {
         self.nets[id as usize][lod].get_or_init(|| Net::new(self.group(id), lod))
+    }
+
+    /// Where the first `count` vertices of a group are on the template.
+    #[must_use]
+    pub fn places(&self, id: GroupId, count: u32) -> &[Place] {
+        let all = || {
+            let vertices = self.vertices(id, self.group(id).count);
+            vertices.map(|v| Place::of(&self.data, v)).collect()
+        };
+        &self.places[id as usize].get_or_init(all)[..count as usize]
     }
 
     /// Heights of the vertices that decide how tall a body is.

@@ -52,6 +52,8 @@ pub(super) struct Place {
 /// Distances of buttons below one another, and where the first sits.
 const BUTTON_M: f32 = 0.072;
 const FIRST_BUTTON_Y: f32 = 0.508;
+/// To where a shirt's button fades, half a texel beyond its edge.
+const BUTTON_RADIUS_M: f32 = 0.0049;
 
 /// Masks 0..1 at a place: seams; buttons, thread and zips; parts of a darker tone; hollows in which
 /// cloth is shaded.
@@ -119,7 +121,7 @@ fn shoulder_seams(at: Place) -> f32 {
     let Place { p: [x, y, z], arm, .. } = at;
     let armhole = line((arm - 0.045).abs() * ARM_M, 0.0036);
     let shoulder = if arm > 0.045 { 0.0 } else { line((z + 0.004).abs(), 0.0035) };
-    armhole.max(0.8 * shoulder * step(0.49, 0.51, y) * step(0.05, 0.06, x.abs()))
+    (0.6 * armhole).max(0.6 * shoulder * step(0.49, 0.51, y) * step(0.05, 0.06, x.abs()))
 }
 
 fn trousers(at: Place) -> [f32; 4] {
@@ -148,7 +150,8 @@ fn trousers(at: Place) -> [f32; 4] {
     let band = 0.8 * line((y - 0.036).abs(), 0.0030);
     let crotch = spot([x, y + 0.055, z - 0.015], 0.070);
     let seam = sides.max(middle).max(band).max(slant).max(0.7 * fly).max(pocket);
-    let thread = fly.max(pocket).max(0.8 * slant);
+    // A texel is wider than a thread, which covers a part of it.
+    let thread = (0.5 * fly).max(0.4 * pocket).max(0.3 * slant);
     [seam, thread, 0.5 * step(0.034, 0.038, y), 0.45 * crotch]
 }
 
@@ -157,10 +160,10 @@ fn buttons([x, y]: [f32; 2], first_y: f32, count: usize, size: f32) -> f32 {
     let below = first_y - y;
     let k = (below / BUTTON_M + 0.5).floor().clamp(0.0, count as f32 - 1.0);
     let dy = below - k * BUTTON_M;
-    if x.abs().max(dy.abs()) >= 0.0060 * size {
+    if x.abs().max(dy.abs()) >= BUTTON_RADIUS_M * size {
         return 0.0;
     }
-    step(0.0060 * size, 0.0040 * size, (x * x + dy * dy).sqrt())
+    step(BUTTON_RADIUS_M * size, 0.6 * BUTTON_RADIUS_M * size, (x * x + dy * dy).sqrt())
 }
 
 /// 1 on a line, 0 from so far beside it on.
