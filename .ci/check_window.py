@@ -53,7 +53,8 @@ def screenshot(env):
     return np.asarray(Image.open(io.BytesIO(png.stdout)).convert("RGB")).astype(np.int16)
 
 
-def wait_for(what, ready, process=None, pause_s=0.1):
+# A screenshot holds up the whole screen, so that looking more often would slow what is waited for.
+def wait_for(what, ready, process=None, pause_s=0.5):
     start = time.monotonic()
     while True:
         found = ready()
@@ -104,7 +105,7 @@ def check(args):
     try:
         blank = screenshot(env)
         drawn = lambda: (lambda s: s if len(np.unique(s.reshape(-1, 3), axis=0)) > 8 else None)(screenshot(env))
-        _, opened_s = wait_for("the window", drawn, window, 0.02)
+        _, opened_s = wait_for("the window", drawn, window, 0.5)
         found = subprocess.run(
             ["xdotool", "search", "--onlyvisible", "--name", "Figurant"], env=env, stdout=subprocess.PIPE, check=True
         )
