@@ -53,7 +53,13 @@ def screenshot(env):
     return np.asarray(Image.open(io.BytesIO(png.stdout)).convert("RGB")).astype(np.int16)
 
 
-def wait_for(what, ready, process=None, pause_s=0.1):
+def colours_of(shot):
+    shot = shot.astype(np.int32)
+    return len(np.unique(shot[..., 0] << 16 | shot[..., 1] << 8 | shot[..., 2]))
+
+
+# A screenshot holds up the whole screen, so that looking more often would slow what is waited for.
+def wait_for(what, ready, process=None, pause_s=0.5):
     start = time.monotonic()
     while True:
         found = ready()
@@ -103,8 +109,12 @@ def check(args):
     window = subprocess.Popen([args.program, args.config], env=env)
     try:
         blank = screenshot(env)
-        drawn = lambda: (lambda s: s if len(np.unique(s.reshape(-1, 3), axis=0)) > 8 else None)(screenshot(env))
-        _, opened_s = wait_for("the window", drawn, window, 0.02)
+
+        def drawn():
+            shot = screenshot(env)
+            return shot if colours_of(shot) > 8 else None
+
+        _, opened_s = wait_for("the window", drawn, window, 0.5)
         found = subprocess.run(
             ["xdotool", "search", "--onlyvisible", "--name", "Figurant"], env=env, stdout=subprocess.PIPE, check=True
         )
@@ -133,7 +143,7 @@ def check(args):
         share = (cpu_ticks(window.pid) - ticks) / os.sysconf("SC_CLK_TCK") / (time.monotonic() - start)
         last = screenshot(env)
         Image.fromarray(last.astype(np.uint8)).save(f"{args.out}/window.png")
-        colours = len(np.unique(last.reshape(-1, 3), axis=0))
+        colours = colours_of(last)
         print(f"window: drawn after {opened_s:.2f} s, its picture {shown_s:.2f} s later, {colours} colours")
         print(f"window: {share:.2%} of a processor at rest")
         assert colours > 5000, "the window is all but empty"
