@@ -38,12 +38,15 @@ const SMOOTH: f64 = 0.35;
 /// Cloth that touches skin goes so much less far at each step.
 const FRICTION: f64 = 0.75;
 /// Cloth comes no nearer than this to what is under it, metres.
-const NEAR_M: f64 = 0.018;
-/// How much farther out than it started it goes for that, metres.
-const OUT_M: f64 = 0.010;
+const NEAR_M: f64 = 0.026;
+/// How much farther out than it started it goes for that, metres: with straight hips, and more where
+/// they are bent by a right angle.
+const OUT_M: [f64; 2] = [0.008, 0.016];
 /// Least and most distance from the outlines of trunk and legs, metres; between them it is that of
 /// what is under the cloth at rest.
 const CLEAR_M: [f64; 2] = [0.004, 0.05];
+/// The same over the ground.
+const FLOOR_M: f64 = 0.012;
 /// How much more where hips are bent by a right angle, for what outlines leave out of them.
 const BENT_M: f64 = 0.010;
 /// No point goes farther than this at a step, which is less than a leg is thick.
@@ -65,7 +68,8 @@ pub struct Hang {
     free: Vec<f64>,
     /// Wanted distance from the outlines of trunk and legs.
     clear_m: Vec<f64>,
-    /// How far the cloth may sink inwards from where it starts until it meets what is under it.
+    /// How far the cloth may sink inwards from where it starts until it meets what is under it;
+    /// negative where it is too near.
     deep_m: Vec<f64>,
     /// The front is open.
     parted: bool,
@@ -93,8 +97,7 @@ impl Hang {
             f64::from(((below_m - from) / (to - from)).clamp(0.0, 1.0))
         };
         let free: Vec<f64> = (0..points.len()).map(free).collect();
-        let deep = |(gap_m, free): (&f32, &f64)| (f64::from(*gap_m) - NEAR_M).max(-OUT_M * free);
-        let deep_m = gaps_m.iter().zip(&free).map(deep).collect();
+        let deep_m = gaps_m.iter().map(|gap_m| f64::from(*gap_m) - NEAR_M).collect();
         Self { free, points_m, start, clear_m, deep_m, parted }
     }
 
@@ -142,7 +145,8 @@ impl Hang {
         let outwards: Vec<Option<DVec3>> =
             (0..start_m.len()).map(|i| frame(&start_m, i).map(|f| f.y_axis)).collect();
         let mut points_m = start_m.clone();
-        let more_m = BENT_M * bend(skeleton);
+        let bend = bend(skeleton);
+        let (more_m, out_m) = (BENT_M * bend, OUT_M[0] + OUT_M[1] * bend);
         let push_out = |points_m: &mut [DVec3], last_m: &[DVec3]| {
             for (i, p) in points_m.iter_mut().enumerate().skip(COLUMNS) {
                 let clear_m = self.clear_m[i] + more_m;
@@ -171,12 +175,13 @@ impl Hang {
             // What was under the cloth where it started is there still.
             for (i, p) in points_m.iter_mut().enumerate() {
                 if let Some(out) = outwards[i] {
-                    *p += out * (-self.deep_m[i] - (*p - start_m[i]).dot(out)).max(0.0);
+                    let deep_m = self.deep_m[i].max(-out_m * self.free[i]);
+                    *p += out * (-deep_m - (*p - start_m[i]).dot(out)).max(0.0);
                 }
             }
             // Whoever stands or lies does so on the plane y = 0.
             if down.y < -0.9 {
-                points_m.iter_mut().for_each(|p| p.y = p.y.max(NEAR_M));
+                points_m.iter_mut().for_each(|p| p.y = p.y.max(FLOOR_M));
             }
         }
         cloth.into_iter().chain(self.turned(&points_m, skeleton)).collect()
