@@ -20,14 +20,19 @@ fn names() -> Catalogue {
     catalogue(&Library::new(&[], 1024).unwrap())
 }
 
-/// The seed's preset with other values of `people`.
-fn document(people: &Value) -> Document {
+/// The seed's preset with other values of `people`, as a file.
+fn text(people: &Value) -> String {
     let mut value: Value =
         serde_json::from_str(presets::find("peoplesanspeople").unwrap().text).unwrap();
     for (name, field) in people.as_object().unwrap() {
         value["people"][name] = field.clone();
     }
-    file::parse(&value.to_string()).unwrap()
+    value.to_string()
+}
+
+/// The seed's preset with other values of `people`.
+fn document(people: &Value) -> Document {
+    file::parse(&text(people)).unwrap()
 }
 
 fn sampler(document: Document) -> Sampler {
@@ -163,11 +168,14 @@ fn clothes_keep_the_colours_and_patterns_that_are_given() {
 #[test]
 fn colours_and_patterns_that_make_no_sense_are_refused_with_their_field() {
     let of = |wardrobe: Value| {
-        let document = document(&json!({"cast": [{}, {"wardrobe": wardrobe}]}));
-        Sampler::new(Arc::new(document), names()).unwrap_err().to_string()
+        let people = json!({"cast": [{}, {"wardrobe": wardrobe}]});
+        match file::parse(&text(&people)) {
+            Ok(document) => Sampler::new(Arc::new(document), names()).unwrap_err().to_string(),
+            Err(problems) => problems.to_string(),
+        }
     };
     let color = of(json!({"top": {"color": [0, 2, 0]}}));
-    assert!(color.contains("people.cast[1].wardrobe.top.color"), "{color}");
+    assert!(color.contains("people.cast[1].wardrobe.top.color[1]: must be <= 1, got 2"), "{color}");
     let pattern = of(json!({"outer": {"pattern": "cloth/stripess"}}));
     assert!(pattern.starts_with("people.cast[1].wardrobe.outer.pattern: there is no"), "{pattern}");
     assert!(pattern.contains("did you mean"), "{pattern}");

@@ -18,6 +18,7 @@ use crate::geometry::pose::PosedSkeleton;
 use crate::geometry::skeleton::{JOINT_COUNT, Limb, Side, trunk};
 use crate::geometry::stance::Stance;
 use crate::geometry::surface::surface;
+use crate::geometry::sway;
 use crate::library::Library;
 use crate::library::figure::LOD_COUNT;
 use crate::library::pose::PREFIX;
@@ -200,11 +201,14 @@ fn add_mesh(
         });
     }
     let first = list.palette.len() as u32;
-    let cloth = dressed.hang.as_ref().map_or_else(Vec::new, |hang| {
-        // Weight pulls down in the world.
-        let to_model = posed.person.placement.rotation.inverse();
-        hang.joints(&posed.skeleton, &posed.body, to_model * DVec3::NEG_Y)
-    });
+    let cloth = match &dressed.hang {
+        Some(hang) => {
+            // Weight pulls down in the world.
+            let to_model = posed.person.placement.rotation.inverse();
+            hang.joints(&posed.skeleton, &posed.body, to_model * DVec3::NEG_Y)
+        }
+        None => sway::joints(&posed.skeleton, &posed.body.heads_m).to_vec(),
+    };
     let bones = posed.skeleton.model_from_rest.iter().chain(&cloth);
     list.palette.extend(bones.map(|m| rows(&(posed.view_from_model * *m))));
     list.objects.push(abi::DrawObject {

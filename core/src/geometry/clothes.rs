@@ -37,7 +37,7 @@ pub(super) struct Worn {
     pub outer: Option<Vec<Vec3>>,
     pub coat: Option<Skirt>,
     pub feet: layers::Footwear,
-    /// What skirt and coat hang on.
+    /// What a skirt hangs on.
     pub hang: Option<Hang>,
 }
 
@@ -86,21 +86,17 @@ impl Worn {
             Skirt::new(shell, &cut, &under)
         });
         let mut all = Self { bottom, top, skirt, outer, coat, feet, hang: None };
-        all.hang(shell, cuts, trunk);
+        all.hang(shell, trunk);
         all
     }
 
-    /// Hangs skirt and coat on one net, that of the longer of them, so that neither goes through the
-    /// other.
-    fn hang(&mut self, shell: &Shell<'_>, cuts: &Cuts, trunk: &Trunk) {
-        let parted = cuts.open && self.skirt.is_none();
-        let longer = match (&self.skirt, &self.coat) {
-            (Some(skirt), Some(coat)) if skirt.hem_m() < coat.hem_m() => Some(skirt),
-            (skirt, coat) => coat.as_ref().or(skirt.as_ref()),
-        };
-        self.hang = longer.map(|longer| longer.net(shell, trunk, parted));
-        if let Some(net) = &self.hang {
-            self.skirt.iter_mut().chain(&mut self.coat).for_each(|skirt| skirt.hang_on(shell, net));
+    /// Hangs a skirt on a net of its own. Under a coat it moves with the legs, as coats do: the two
+    /// would show through each other wherever one net folds.
+    fn hang(&mut self, shell: &Shell<'_>, trunk: &Trunk) {
+        if let (Some(skirt), None) = (&mut self.skirt, &self.coat) {
+            let net = skirt.net(shell, trunk);
+            skirt.hang_on(shell, &net);
+            self.hang = Some(net);
         }
     }
 
@@ -139,7 +135,7 @@ fn spread_over(layer: &mut [Vec3], shell: &Shell<'_>, skirt: &[Vec3]) {
     }
 }
 
-/// Adds all clothes to the parts; gives what skirts and coats hang on.
+/// Adds all clothes to the parts; gives what a skirt hangs on.
 pub(super) fn add(
     out: &mut Parts,
     figure: &Figure,

@@ -1,4 +1,4 @@
-//! Cloth that hangs round both legs: skirts and the lower parts of coats.
+//! Cloth that hangs round both legs: skirts.
 //!
 //! No fixed weights of a leg's joints let a skirt hang. So its vertices are moved by joints of its
 //! own, a net of points over the cloth. For every pose the points start where the legs' joints would
@@ -22,8 +22,6 @@ pub(super) const ROWS: usize = 8;
 pub(super) const COLUMNS: usize = 24;
 /// Joints are numbered in eight bits.
 const _: () = assert!(CLOTH_JOINT_COUNT + ROWS * COLUMNS <= 256);
-/// The column in the middle of the front, where coats open.
-const FRONT: usize = COLUMNS / 4;
 
 /// Steps, and how far the points sink in the first of them, metres.
 const STEPS: usize = 18;
@@ -31,8 +29,6 @@ const SINK_M: f64 = 0.035;
 /// Cloth is stretched and pressed together by no more than this round the legs, and downwards.
 const ROUND: [f64; 2] = [0.95, 1.03];
 const DOWN: [f64; 2] = [0.92, 1.01];
-/// The front of an open coat parts as far as this.
-const PARTED: f64 = 2.5;
 /// How much of its neighbours' way each point goes at each step: cloth does not crumple.
 const SMOOTH: f64 = 0.35;
 /// Cloth that touches skin goes so much less far at each step.
@@ -71,8 +67,6 @@ pub struct Hang {
     /// How far the cloth may sink inwards from where it starts until it meets what is under it;
     /// negative where it is too near.
     deep_m: Vec<f64>,
-    /// The front is open.
-    parted: bool,
 }
 
 impl Hang {
@@ -82,7 +76,6 @@ impl Hang {
         gaps_m: &[f32],
         start: Vec<SkinVertex>,
         trunk: &Trunk,
-        parted: bool,
     ) -> Self {
         let rest = trunk.solids(&PosedSkeleton::REST);
         let points_m: Vec<DVec3> = points.iter().map(|p| p.as_dvec3()).collect();
@@ -98,7 +91,7 @@ impl Hang {
         };
         let free: Vec<f64> = (0..points.len()).map(free).collect();
         let deep_m = gaps_m.iter().map(|gap_m| f64::from(*gap_m) - NEAR_M).collect();
-        Self { free, points_m, start, clear_m, deep_m, parted }
+        Self { free, points_m, start, clear_m, deep_m }
     }
 
     /// Whether a place in a column is so high that the cloth lies on the hips there.
@@ -135,8 +128,8 @@ impl Hang {
         SkinVertex { joints, weights }
     }
 
-    /// Where the joints of [`sway`] and those of the net go, as [`PosedSkeleton::model_from_rest`] has it for the others; `down`
-    /// is the unit direction of weight in model space.
+    /// Where the joints of [`sway`] and those of the net go, as [`PosedSkeleton::model_from_rest`]
+    /// has it for the others; `down` is the unit direction of weight in model space.
     #[must_use]
     pub fn joints(&self, skeleton: &PosedSkeleton, body: &RestBody, down: DVec3) -> Vec<DAffine3> {
         let solids = body.trunk.solids(skeleton);
@@ -222,11 +215,9 @@ impl Hang {
             for k in 0..COLUMNS {
                 let (i, j) = (row * COLUMNS + k, row * COLUMNS + (k + 1) % COLUMNS);
                 let rest_m = self.points_m[i].distance(self.points_m[j]);
-                let opens = self.parted && (k == FRONT || k + 1 == FRONT);
-                let most = if opens { PARTED } else { ROUND[1] };
                 let way = points_m[j] - points_m[i];
                 let length = way.length();
-                let wanted = length.clamp(rest_m * ROUND[0], rest_m * most);
+                let wanted = length.clamp(rest_m * ROUND[0], rest_m * ROUND[1]);
                 let (a, b) = (self.free[i], self.free[j]);
                 if wanted != length && length > 1e-9 && a + b > 0.0 {
                     let more = way * ((wanted - length) / (length * (a + b)));
@@ -308,7 +299,7 @@ mod tests {
             })
             .collect();
         let hips = SkinVertex { joints: [0; 4], weights: [255, 0, 0, 0] };
-        Hang::new(&points, &vec![0.05; points.len()], vec![hips; points.len()], trunk, false)
+        Hang::new(&points, &vec![0.05; points.len()], vec![hips; points.len()], trunk)
     }
 
     fn posed(pose: &str) -> (Hang, Vec<DVec3>, PosedSkeleton, RestBody) {

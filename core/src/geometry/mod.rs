@@ -49,6 +49,6 @@ mod skirt;
 mod solve;
 pub mod stance;
 pub mod surface;
-mod sway;
+pub mod sway;
 pub mod trunk;
 mod wide;

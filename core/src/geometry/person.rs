@@ -78,7 +78,7 @@ pub struct Dressed {
     pub mesh: Arc<Mesh>,
     /// Parts in a fixed order; empty ones are left out.
     pub parts: Vec<Part>,
-    /// What moves a skirt or a coat: its joints come after the skeleton's.
+    /// What moves a skirt: its joints come after the skeleton's.
     pub hang: Option<Hang>,
 }
 

@@ -66,7 +66,7 @@ impl Skirt {
         let heights = Heights::find(shell, cut)?;
         let (positions, field) = rings(shell, cut, under, &heights, (rows, columns))?;
         let mut skirt = Self {
-            skin: vec![SkinVertex::default(); positions.len()],
+            skin: weights(shell, &positions, columns),
             normals: Vec::new(),
             render: Vec::new(),
             uvs: Vec::new(),
@@ -81,8 +81,8 @@ impl Skirt {
         Some(skirt)
     }
 
-    /// The net that moves it, and what is hung on the same.
-    pub fn net(&self, shell: &Shell<'_>, trunk: &Trunk, parted: bool) -> Hang {
+    /// The net that can move it.
+    pub fn net(&self, shell: &Shell<'_>, trunk: &Trunk) -> Hang {
         let rows = self.positions.len() / self.columns;
         let at = |row: f32, column: f32| {
             let (r, k) = ((row as usize).min(rows - 2), column as usize);
@@ -99,7 +99,7 @@ impl Skirt {
             .map(|(row, column)| at(row, column))
             .collect();
         let gaps_m = self.gaps_m(shell, &points);
-        Hang::new(&points, &gaps_m, weights(shell, &points, hang::COLUMNS), trunk, parted)
+        Hang::new(&points, &gaps_m, weights(shell, &points, hang::COLUMNS), trunk)
     }
 
     /// Distances of points from what the skirt goes round: from the nearest vertex's tangent plane, or
