@@ -90,10 +90,10 @@ impl Worn {
         all
     }
 
-    /// Hangs a skirt on a net of its own. Under a coat it moves with the legs, as coats do: the two
-    /// would show through each other wherever one net folds.
+    /// Hangs a skirt on a net of its own. Under jackets and coats it moves with the legs, as they do:
+    /// what hangs by itself would show through what does not.
     fn hang(&mut self, shell: &Shell<'_>, trunk: &Trunk) {
-        if let (Some(skirt), None) = (&mut self.skirt, &self.coat) {
+        if let (Some(skirt), None) = (&mut self.skirt, &self.outer) {
             let net = skirt.net(shell, trunk);
             skirt.hang_on(shell, &net);
             self.hang = Some(net);
