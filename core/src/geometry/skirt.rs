@@ -1,9 +1,9 @@
 //! Skirts: rings of cloth round both legs, from the waist downwards.
 //!
-//! Each ring is the convex hull of what it goes round, so no leg is outside at rest. It hangs on a net
-//! ([`super::hang`]) that starts with the legs: beside a leg with that leg, between the legs with the
-//! one that is ahead in front and with the other one behind, which is how cloth spans them in a
-//! stride. Tops and trousers are not known here.
+//! Each ring is the convex hull of what it goes round, so no leg is outside at rest. It moves with
+//! the legs: beside a leg with that leg, between the legs with the one that is ahead in front and
+//! with the other one behind, which is how cloth spans them in a stride. Where nothing is worn over
+//! it, it hangs on a net ([`super::hang`]) that starts so. Tops and trousers are not known here.
 
 use glam::Vec3;
 
