@@ -1,7 +1,7 @@
 // Shade and display: the picture of a band.
 //
 // The samples of a pixel that show the same smooth stretch of one draw share a fragment, all
-// others get one for each triangle; its weight is its share of the samples. Tone mapping comes
+// others get one for each triangle; its weight is its share of the samples. Developing comes
 // before the sum over a pixel's fragments, so that a bright edge stays smooth; the sum is made in
 // linear display light. One invocation a pixel.
 
@@ -48,12 +48,13 @@ fn fragment(slot: u32, at: vec2<f32>) -> vec3<f32> {
     let draw = primitives[slot].draw;
     let point = surface_point(primitives[slot].corners, at, surfaces[draw].flags);
     let look = look_at(draw, point);
-    return tone_map(reflected(point, look, surfaces[draw].metallic, surfaces[draw].wrap));
+    return developed(reflected(point, look, surfaces[draw].metallic, surfaces[draw].wrap), at);
 }
 
 // Display light of a pixel whose samples start at `first`.
 fn pixel_color(first: u32, corner: vec2<f32>) -> vec3<f32> {
     var color = vec3<f32>(0.0);
+    var nothing = 0u;
     var rest = (1u << SAMPLES) - 1u;
     for (var i = 0u; i < SAMPLES; i++) {
         if ((rest >> i) & 1u) == 0u {
@@ -61,7 +62,7 @@ fn pixel_color(first: u32, corner: vec2<f32>) -> vec3<f32> {
         }
         let own = samples[first + i];
         if own.x == NOTHING {
-            color += frame.background * (1.0 / f32(SAMPLES));
+            nothing += 1u;
             continue;
         }
         let draw = primitives[own.x].draw;
@@ -86,6 +87,9 @@ fn pixel_color(first: u32, corner: vec2<f32>) -> vec3<f32> {
         let at = corner + vec2<f32>(sum) * (1.0 / f32(count)) * (1.0 / 16.0);
         color += fragment(own.x, at) * (f32(count) / f32(SAMPLES));
     }
+    if nothing > 0u {
+        color += developed(frame.background, corner + 0.5) * (f32(nothing) / f32(SAMPLES));
+    }
     return color;
 }
 
@@ -96,5 +100,6 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     }
     let pixel = id.y * raster_target.width + id.x;
     let corner = vec2<f32>(f32(id.x), f32(id.y + raster_target.first_y));
-    picture[pixel] = encode(pixel_color(pixel * SAMPLES, corner));
+    let color = pixel_color(pixel * SAMPLES, corner);
+    picture[pixel] = encode(color, vec2<u32>(id.x, id.y + raster_target.first_y));
 }

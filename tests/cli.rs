@@ -17,7 +17,7 @@ use figurant_core::label::annotation::{
     Annotations, CameraLabel, Keypoint, PersonLabel, PersonMeta, Visibility,
 };
 use figurant_core::plan::{Output, StageTimes};
-use figurant_core::scene::{Camera, Environment, Lights, Scene, Sex};
+use figurant_core::scene::{Camera, Environment, Lights, Post, Scene, Sex};
 use glam::{DQuat, DVec3};
 use serde_json::{Value, json};
 
@@ -103,6 +103,7 @@ impl FrameMaker for Painter {
                     },
                 },
                 exposure_ev100: 3.0,
+                post: Post::default(),
                 objects: vec![],
                 people: vec![],
             },

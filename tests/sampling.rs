@@ -200,7 +200,7 @@ fn a_switch_changes_nothing_else() {
         (|d| d.people.look.enabled = false, &["people/*/look"]),
         (|d| d.people.wardrobe.enabled = false, &["people/*/outfit"]),
         (|d| d.people.pose.enabled = false, &["people/*/pose"]),
-        (|d| d.post.enabled = false, &["exposure_ev100"]),
+        (|d| d.post.enabled = false, &["exposure_ev100", "post"]),
         (|d| d.materials.roughness = Param::uniform(0.1, 0.9), &["objects/*/material/roughness"]),
     ];
     let base = preset("peoplesanspeople");

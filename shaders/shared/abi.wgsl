@@ -27,15 +27,27 @@ struct Frame {
     pad0: u32,
     ground: vec3<f32>,
     pad1: u32,
-    // Linear display light where nothing stands.
+    // Exposed light where nothing stands.
     background: vec3<f32>,
-    pad2: u32,
+    // Key of the grain, mixed.
+    grain_key: u32,
     to_sun: vec3<f32>,
     pad3: u32,
     sun_color: vec3<f32>,
     pad4: u32,
     // Right, up and towards the sun, for the fit of its map.
     sun_axes: array<vec4<f32>, 3>,
+    // Rows of the matrices before and after the contrast curve.
+    grade_before: array<vec4<f32>, 3>,
+    grade_after: array<vec4<f32>, 3>,
+    // Three times the vignette; 0 for none.
+    vignette: f32,
+    // Exponent; 1 for none, 0 and less where nothing is graded.
+    contrast: f32,
+    // Standard deviation of the grain in sRGB 0..1, over that of a sum of four bytes.
+    grain: f32,
+    // 0 ACES, 1 AgX, 2 none.
+    tone_curve: u32,
 }
 
 // A picture that is rastered: a band of the camera's, or the sun's map.

@@ -1,11 +1,4 @@
-// Display: exposed light to the 8-bit picture.
-
-// Exposed light to linear display light, 0..1 (Narkowicz, "ACES filmic tone mapping curve", 2015).
-fn tone_map(v: vec3<f32>) -> vec3<f32> {
-    let x = clamp(v, vec3<f32>(0.0), vec3<f32>(1e4));
-    let y = (x * (x * 2.51 + 0.03)) / (x * (x * 2.43 + 0.59) + 0.14);
-    return clamp(y, vec3<f32>(0.0), vec3<f32>(1.0));
-}
+// Display: linear display light to the 8-bit picture, with grain.
 
 // Linear display light to sRGB (IEC 61966-2-1): the toe, and above it a polynomial of the fourth
 // root that is within 0.01 of a step of 255.
@@ -16,7 +9,25 @@ fn srgb(x: vec3<f32>) -> vec3<f32> {
     return select(x * 12.92, curve, x > vec3<f32>(0.0031308));
 }
 
-// Linear display light to bytes, red lowest.
-fn encode(color: vec3<f32>) -> u32 {
-    return pack4x8unorm(vec4<f32>(srgb(clamp(color, vec3<f32>(0.0), vec3<f32>(1.0))), 0.0));
+// A well mixed number: PCG (Jarzynski and Olano, 2020).
+fn mixed(v: u32) -> u32 {
+    let state = v * 747796405u + 2891336453u;
+    let word = ((state >> ((state >> 28u) + 4u)) ^ state) * 277803737u;
+    return (word >> 22u) ^ word;
+}
+
+// Grain of a pixel, sRGB: the sum of four bytes of a hash.
+fn grain(pixel: vec2<u32>) -> f32 {
+    let bytes = mixed(pixel.x + mixed(pixel.y + frame.grain_key));
+    let sum = (bytes & 255u) + ((bytes >> 8u) & 255u) + ((bytes >> 16u) & 255u) + (bytes >> 24u);
+    return f32(i32(sum) - 510) * frame.grain;
+}
+
+// Linear display light of a pixel to bytes, red lowest.
+fn encode(color: vec3<f32>, pixel: vec2<u32>) -> u32 {
+    var v = srgb(clamp(color, vec3<f32>(0.0), vec3<f32>(1.0)));
+    if frame.grain > 0.0 {
+        v += grain(pixel);
+    }
+    return pack4x8unorm(vec4<f32>(v, 0.0));
 }

@@ -6,8 +6,8 @@ use figurant_core::engine::cpu::{CpuEngine, CpuOptions, SimdChoice};
 use figurant_core::engine::{Engine, EngineError};
 use figurant_core::library::texture::{Encoding, Texture, color_from_srgb8};
 use figurant_core::plan::{Output, StageTimes};
-use figurant_tests::drawlists::{add, empty, mixed, view};
-use figurant_tests::meshes::{self};
+use figurant_tests::drawlists::{add, any_grade, empty, mixed, view};
+use figurant_tests::meshes::{self, Dice};
 use glam::{DAffine3, DMat3, DVec3};
 use std::sync::Arc;
 
@@ -15,6 +15,9 @@ use super::common::*;
 
 fn lit(seed: u64, samples: u32) -> DrawList {
     let mut list = mixed(seed, samples);
+    if seed % 2 == 1 {
+        list.grade = any_grade(&mut Dice::new(seed));
+    }
     list.lights.sun =
         Some(Sun { direction_to_sun: [0.3, 0.8, 0.5], color_lux: [2.0; 3], shadow: true });
     list.lights.points = vec![PointLight {

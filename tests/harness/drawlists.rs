@@ -3,8 +3,9 @@
 use std::sync::Arc;
 
 use figurant_core::draw::DrawList;
-use figurant_core::draw::abi::{Draw, DrawObject, Lights, Material, View};
+use figurant_core::draw::abi::{ColorGrade, Draw, DrawObject, Grade, Lights, Material, View};
 use figurant_core::library::mesh::Mesh;
+use figurant_core::scene::ToneCurve;
 use glam::{DAffine3, DMat3, DQuat, DVec3};
 
 use crate::meshes::{self, Dice};
@@ -82,6 +83,23 @@ pub fn add_skinned(
     let object = add(list, mesh, DAffine3::IDENTITY, material);
     list.objects[object].palette = first..list.palette.len() as u32;
     object
+}
+
+/// Everything that may happen to the light behind the lens, or some of it.
+pub fn any_grade(dice: &mut Dice) -> Grade {
+    let mut matrix = || {
+        let mut entry = |same: bool| dice.range(-0.1, 0.1) as f32 + if same { 1.0 } else { 0.0 };
+        std::array::from_fn(|r| std::array::from_fn(|c| entry(r == c)))
+    };
+    let (before, after) = (matrix(), matrix());
+    let contrast = if dice.unit() < 0.3 { 1.0 } else { dice.range(0.5, 1.5) as f32 };
+    Grade {
+        vignette: if dice.unit() < 0.3 { 0.0 } else { dice.range(0.0, 0.6) as f32 },
+        color: (dice.unit() < 0.8).then_some(ColorGrade { before, contrast, after }),
+        tone_curve: [ToneCurve::Aces, ToneCurve::Agx, ToneCurve::None][dice.below(3)],
+        grain: if dice.unit() < 0.5 { 0.0 } else { 0.03 },
+        grain_key: dice.below(1 << 30) as u32,
+    }
 }
 
 /// Scale, then a random rotation, then a position.

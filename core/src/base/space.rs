@@ -36,3 +36,15 @@ pub const CV_FROM_VIEW: DMat3 =
 pub fn exposure_from_ev100(ev100: f64) -> f64 {
     1.0 / (1.2 * libm::exp2(ev100))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn exposure_has_the_seeds_figures() {
+        for (ev100, scale) in [(2.0, 0.208_333), (7.0, 0.006_510_4)] {
+            assert!((exposure_from_ev100(ev100) / scale - 1.0).abs() < 1e-5);
+        }
+    }
+}

@@ -23,6 +23,7 @@ mod output;
 mod param;
 mod people;
 mod place;
+mod post;
 pub mod presets;
 mod validate;
 mod vector;
@@ -33,7 +34,7 @@ pub use face::{Expression, ExpressionKind};
 pub use lights::{
     Clock, Environment, Lights, MovingLight, PointLight, Sun, SunAngles, SunDirection,
 };
-pub use output::{ImageFormat, Labels, Output, Post, Quality, Scheme};
+pub use output::{ImageFormat, Labels, Output, Quality, Scheme};
 pub use param::{
     Auto, AutoWord, Beta, Binomial, Chance, Choice, Distribution, Flag, Lognormal, Normal, Param,
     Triangular, Weighted,
@@ -43,6 +44,7 @@ pub use place::{
     Background, Floor, Grid, GridPlane, Ground, Materials, Occluders, Placement, PoissonDisk, Row,
     Wall,
 };
+pub use post::Post;
 pub use validate::{MAX_OBJECTS, MAX_PEOPLE, validate};
 pub use vector::{
     BoxRegion, Color, ColorLaw, GridRegion, JointRotation, Region, Rotation, RotationLaw, Round,
@@ -85,7 +87,7 @@ pub struct Document {
     pub people: People,
     /// What walls, floors and occluders are made of.
     pub materials: Materials,
-    /// Exposure.
+    /// What happens to the light behind the lens.
     pub post: Post,
     /// How labels are made.
     pub labels: Labels,

@@ -1,32 +1,9 @@
-//! What is made of a scene: exposure, labels, files and quality.
+//! What is made of a scene: labels, files and quality.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::Param;
 use crate::plan::{Output as Kind, Outputs};
-
-/// What happens to the light behind the lens.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(default, deny_unknown_fields)]
-pub struct Post {
-    /// Where false, every parameter takes its median.
-    pub enabled: bool,
-    /// Exposure value at ISO 100; one more halves the picture's brightness.
-    pub exposure_ev: Param,
-    /// Taken off the exposure value; one more doubles the picture's brightness.
-    pub compensation_ev: Param,
-}
-
-impl Default for Post {
-    fn default() -> Self {
-        // The seed's own compensation is +3 in its engine's light units. In photometric units this
-        // one, with the surroundings' light, gives its published pictures' mean luma (0.505) and
-        // clipped share (1 %).
-        let compensation_ev = (-1.5).into();
-        Self { enabled: true, exposure_ev: Param::uniform(5.0, 10.0), compensation_ev }
-    }
-}
 
 /// How labels are made.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]

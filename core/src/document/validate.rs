@@ -403,6 +403,17 @@ fn outfit_rows(c: &mut Check, rows: &[OutfitRow]) {
 fn post(c: &mut Check, post: &Post) {
     c.param("post.exposure_ev", &post.exposure_ev, Range::from_to(-20.0, 40.0));
     c.param("post.compensation_ev", &post.compensation_ev, Range::from_to(-20.0, 20.0));
+    c.param("post.vignette", &post.vignette, Range::from_to(0.0, 1.0));
+    let both_ways = [
+        ("post.white_balance_temperature", &post.white_balance_temperature),
+        ("post.white_balance_tint", &post.white_balance_tint),
+        ("post.contrast", &post.contrast),
+        ("post.saturation", &post.saturation),
+    ];
+    for (path, param) in both_ways {
+        c.param(path, param, Range::from_to(-100.0, 100.0));
+    }
+    c.param("post.grain", &post.grain, Range::from_to(0.0, 1.0));
 }
 
 fn labels(c: &mut Check, labels: &Labels) {

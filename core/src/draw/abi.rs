@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use crate::library::mesh::Mesh;
 use crate::library::texture::Texture;
+use crate::scene::ToneCurve;
 
 /// One frame, ready to be drawn.
 #[derive(Clone, Debug, Default)]
@@ -25,6 +26,8 @@ pub struct DrawList {
     pub lights: Lights,
     /// Linear scale from nits to the sensor's 0..1.
     pub exposure: f32,
+    /// What else happens to the light behind the lens.
+    pub grade: Grade,
     /// Largest side of the sun's shadow map in texels, a multiple of 64.
     pub shadow_map_size: u32,
     /// Samples per pixel: 1, 4 or 16.
@@ -178,4 +181,30 @@ pub struct PointLight {
     pub color_cd: [f32; 3],
     /// Metres.
     pub radius_m: f32,
+}
+
+/// From exposed light to the picture: vignette, colour, tone curve, and grain on what is encoded.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Grade {
+    /// 0 none .. 1: `1 - d.d` of the light is left at `d = min(3 vignette |xy / size - 1/2|, 1)`.
+    pub vignette: f32,
+    /// White balance, contrast and saturation.
+    pub color: Option<ColorGrade>,
+    /// To linear display light.
+    pub tone_curve: ToneCurve,
+    /// Standard deviation of monochrome noise in sRGB 0..1.
+    pub grain: f32,
+    /// Key of the noise.
+    pub grain_key: u32,
+}
+
+/// `after (0.18 (before v / 0.18)^contrast)`, with negative components cut before the power.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ColorGrade {
+    /// Rows of a matrix; all of the grade where the contrast is 1.
+    pub before: [[f32; 3]; 3],
+    /// Exponent; 1 for none.
+    pub contrast: f32,
+    /// Rows of a matrix.
+    pub after: [[f32; 3]; 3],
 }

@@ -18,6 +18,7 @@
 pub mod abi;
 mod cast;
 pub mod frustum;
+mod grade;
 mod lights;
 mod objects;
 mod people;
@@ -139,6 +140,7 @@ impl<'a> Drawing<'a> {
         let list = DrawList {
             view: view(&scene.camera, &view_from_world),
             exposure: exposure_from_ev100(scene.exposure_ev100) as f32,
+            grade: grade::grade(scene),
             shadow_map_size: options.shadow_map_size,
             samples: options.samples,
             ..DrawList::default()

@@ -3,7 +3,7 @@
 
 use super::EngineError;
 use crate::draw::DrawList;
-use crate::draw::abi::{Draw, Material};
+use crate::draw::abi::{Draw, Grade, Material};
 use crate::library::mesh::Triangle;
 use crate::library::texture::Texture;
 
@@ -83,10 +83,18 @@ fn check_sizes(list: &DrawList) -> Result<(), EngineError> {
     Ok(())
 }
 
+fn check_grade(grade: &Grade) -> Result<(), EngineError> {
+    let color = grade.color.iter().flat_map(|c| {
+        c.before.as_flattened().iter().chain(c.after.as_flattened()).chain([&c.contrast])
+    });
+    finite(NO_OBJECT, "a number of the grade", color.chain([&grade.vignette, &grade.grain]))
+}
+
 fn check_view_and_lights(list: &DrawList) -> Result<(), EngineError> {
     let (view, lights) = (&list.view, &list.lights);
     let numbers = [view.fx, view.fy, view.cx, view.cy, view.near_m, list.exposure];
     finite(NO_OBJECT, "a number of the view", &numbers)?;
+    check_grade(&list.grade)?;
     finite(NO_OBJECT, "a number of the view", view.view_from_world.as_flattened())?;
     if view.fx <= 0.0 || view.fy <= 0.0 || view.near_m <= 0.0 {
         return invalid("focal length and near plane", 0, 0, "positive numbers");

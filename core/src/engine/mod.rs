@@ -12,6 +12,7 @@ pub mod cpu;
 #[cfg(feature = "gpu")]
 pub mod gpu;
 mod input;
+mod noise;
 mod pattern;
 
 /// What can go wrong while a frame is rendered.

@@ -9,7 +9,7 @@ use crate::label::annotation::{
     Annotations, CameraLabel, Keypoint, PersonLabel, PersonMeta, Visibility,
 };
 use crate::plan::{Output, Outputs};
-use crate::scene::{Camera, Environment, Lights, Scene, Sex};
+use crate::scene::{Camera, Environment, Lights, Post, Scene, Sex};
 
 pub const WIDTH: u32 = 24;
 pub const HEIGHT: u32 = 16;
@@ -60,6 +60,7 @@ pub fn scene(frame: u32) -> Scene {
             },
         },
         exposure_ev100: 5.0,
+        post: Post::default(),
         objects: Vec::new(),
         people: Vec::new(),
     }

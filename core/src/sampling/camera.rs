@@ -1,11 +1,11 @@
-//! The camera and its exposure.
+//! The camera.
 
 use glam::DVec3;
 
 use super::keys;
 use super::value::{number, rotation, vector};
 use crate::base::rng::Draws;
-use crate::document::{Document, Post};
+use crate::document::Document;
 use crate::scene::Camera;
 
 pub(super) fn camera(document: &Document, draws: Draws) -> Camera {
@@ -23,10 +23,4 @@ pub(super) fn camera(document: &Document, draws: Draws) -> Camera {
         rotation: rotation(&camera.rotation_deg, offset_deg, of(keys::CAMERA_ROTATION)),
         near_m: camera.near_m,
     }
-}
-
-pub(super) fn exposure_ev100(post: &Post, draws: Draws) -> f64 {
-    let draws = draws.random_if(post.enabled);
-    number(&post.exposure_ev, draws.of(keys::EXPOSURE, 0))
-        - number(&post.compensation_ev, draws.of(keys::COMPENSATION, 0))
 }

@@ -130,6 +130,12 @@ keys! {
     GAZE = "people.pose.gaze",
     EXPOSURE = "post.exposure",
     COMPENSATION = "post.compensation",
+    VIGNETTE = "post.vignette",
+    TEMPERATURE = "post.white_balance_temperature",
+    TINT = "post.white_balance_tint",
+    CONTRAST = "post.contrast",
+    SATURATION = "post.saturation",
+    GRAIN = "post.grain",
 }
 
 #[cfg(test)]

@@ -26,6 +26,7 @@ mod people;
 mod place;
 mod poisson_disk;
 mod pose;
+mod post;
 mod quantile;
 mod style;
 mod value;
@@ -125,7 +126,8 @@ impl Sampler {
             seed: document.seed,
             camera: camera::camera(document, draws),
             lights: lights::lights(&document.lights, draws),
-            exposure_ev100: camera::exposure_ev100(&document.post, draws),
+            exposure_ev100: post::exposure_ev100(&document.post, draws),
+            post: post::post(&document.post, draws),
             objects: background::objects(document, catalogue, draws),
             people: people::people(&document.people, catalogue, faces, draws),
         }

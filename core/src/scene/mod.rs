@@ -10,6 +10,7 @@ use serde::{Deserialize, Serialize};
 mod camera;
 mod outfit;
 mod person;
+mod post;
 
 pub use camera::Camera;
 pub use outfit::{Bottom, BottomKind, Outer, OuterKind, Outfit, ShoeKind, Shoes, Top, TopKind};
@@ -17,6 +18,7 @@ pub use person::{
     BeardStyle, Body, Glasses, HairStyle, HandShape, Headwear, HeadwearKind, Look, Person, Pose,
     PoseBlend, Sex,
 };
+pub use post::{Post, ToneCurve};
 
 /// Everything that one frame shows.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -31,6 +33,8 @@ pub struct Scene {
     pub lights: Lights,
     /// Exposure value at ISO 100.
     pub exposure_ev100: f64,
+    /// What else happens to the light behind the lens.
+    pub post: Post,
     /// Walls, floors and occluders.
     pub objects: Vec<Object>,
     /// People.

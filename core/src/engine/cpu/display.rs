@@ -1,20 +1,12 @@
-//! Display: exposed light to the 8-bit picture.
+//! Display: linear display light to the 8-bit picture, with grain where it is wanted.
 //!
-//! Tone curve: Narkowicz, "ACES filmic tone mapping curve" (2015). Transfer: sRGB (IEC 61966-2-1),
-//! in a polynomial of the fourth root that is within 0.01 of a step of 255 of it.
+//! Transfer: sRGB (IEC 61966-2-1), in a polynomial of the fourth root that is within 0.01 of a step
+//! of 255 of it.
 
-use super::samples::TILE;
+use super::samples::{Layout, TILE};
 use super::shade::TileColor;
 use super::simd::{F32x8, I32x8, LANES, kernel};
-
-/// Exposed light to linear display light, 0..1.
-#[inline(always)]
-pub(super) fn tone_map<const AVX2: bool>(v: F32x8<AVX2>) -> F32x8<AVX2> {
-    let s = F32x8::splat;
-    let x = v.clamp(0.0, 1e4);
-    let y = (x * (x * s(2.51) + s(0.03))) / (x * (x * s(2.43) + s(0.59)) + s(0.14));
-    y.clamp(0.0, 1.0)
-}
+use crate::engine::noise::{GRAIN_STD, mixed};
 
 /// Linear display light 0..1 to sRGB 0..1.
 ///
@@ -31,24 +23,30 @@ fn srgb<const AVX2: bool>(x: F32x8<AVX2>) -> F32x8<AVX2> {
     x.gt(s(0.003_130_8)).select(curve, x * s(12.92))
 }
 
-/// Linear display light to a byte of sRGB.
+/// Linear display light to a byte of sRGB, with noise in 1/255.
 #[inline(always)]
-fn byte<const AVX2: bool>(v: F32x8<AVX2>) -> I32x8<AVX2> {
-    (srgb(v.clamp(0.0, 1.0)) * F32x8::splat(255.0)).clamp(0.0, 255.0).round_i32()
+fn byte<const AVX2: bool>(v: F32x8<AVX2>, noise: F32x8<AVX2>) -> I32x8<AVX2> {
+    (srgb(v.clamp(0.0, 1.0)) * F32x8::splat(255.0) + noise).clamp(0.0, 255.0).round_i32()
 }
 
 kernel! {
-    /// Encodes a tile's colours: red, green and blue bytes of each pixel slot.
-    fn encode(color: &TileColor, bytes: &mut [[u8; 3]; TILE * TILE]) = encode_body
+    /// Encodes a tile's colours: red, green and blue bytes of each pixel slot. Noise in 1/255 by
+    /// pixel slot, or none.
+    fn encode(color: &TileColor, noise: &[f32], bytes: &mut [[u8; 3]; TILE * TILE]) = encode_body
 }
 
 #[inline(always)]
-fn encode_body<const AVX2: bool>(color: &TileColor, bytes: &mut [[u8; 3]; TILE * TILE]) {
+fn encode_body<const AVX2: bool>(
+    color: &TileColor,
+    noise: &[f32],
+    bytes: &mut [[u8; 3]; TILE * TILE],
+) {
     for (from, bytes) in bytes.as_chunks_mut::<LANES>().0.iter_mut().enumerate() {
         let from = from * LANES;
-        let red = byte::<AVX2>(F32x8::load(&color[0][from..from + LANES]));
-        let green = byte::<AVX2>(F32x8::load(&color[1][from..from + LANES]));
-        let blue = byte::<AVX2>(F32x8::load(&color[2][from..from + LANES]));
+        let noise = if noise.is_empty() { F32x8::ZERO } else { F32x8::load(&noise[from..]) };
+        let red = byte::<AVX2>(F32x8::load(&color[0][from..from + LANES]), noise);
+        let green = byte::<AVX2>(F32x8::load(&color[1][from..from + LANES]), noise);
+        let blue = byte::<AVX2>(F32x8::load(&color[2][from..from + LANES]), noise);
         let pixels = red | (green << 8) | (blue << 16);
         // Four bytes at a time; the fourth is overwritten by the next pixel's first.
         let bytes = bytes.as_flattened_mut();
@@ -56,6 +54,24 @@ fn encode_body<const AVX2: bool>(color: &TileColor, bytes: &mut [[u8; 3]; TILE *
             bytes[lane * 3..lane * 3 + 4].copy_from_slice(&pixel.to_le_bytes());
         }
         bytes[(LANES - 1) * 3..].copy_from_slice(&pixels.0[LANES - 1].to_le_bytes()[..3]);
+    }
+}
+
+/// Grain of each pixel slot of a tile, in 1/255: the sum of four bytes of a hash, which is normally
+/// distributed but for its tails, of the given standard deviation (a share of full scale).
+pub(super) fn grain<const S: usize>(
+    std: f32,
+    key: u32,
+    origin_px: [u32; 2],
+    out: &mut [f32; TILE * TILE],
+) {
+    let key = mixed(key);
+    let scale = std / GRAIN_STD * 255.0;
+    for (out, xy) in out.iter_mut().zip(&Layout::<S>::SLOT_XY) {
+        let [x, y] = [0, 1].map(|axis| origin_px[axis] + u32::from(xy[axis]));
+        let [a, b, c, d] = mixed(x.wrapping_add(mixed(y.wrapping_add(key)))).to_le_bytes();
+        let sum = i32::from(a) + i32::from(b) + i32::from(c) + i32::from(d) - 510;
+        *out = sum as f32 * scale;
     }
 }
 
@@ -80,17 +96,25 @@ mod tests {
             color[0][byte] = crate::base::color::linear_from_srgb(byte as f32 / 255.0);
         }
         let mut bytes = Box::new([[0; 3]; TILE * TILE]);
-        encode(crate::engine::cpu::simd::Level::BASELINE, &color, &mut bytes);
+        encode(crate::engine::cpu::simd::Level::BASELINE, &color, &[], &mut bytes);
         for byte in 0..256 {
             assert_eq!(usize::from(bytes[byte][0]), byte);
         }
     }
 
     #[test]
-    fn the_tone_curve_rises_from_0_to_1() {
-        let at = |x: f32| tone_map(F32x8::<false>::splat(x)).0[0];
-        assert_eq!(at(0.0), 0.0);
-        assert!(at(1e3) > 0.999 && at(f32::MAX) <= 1.0 && at(f32::NAN) == 0.0);
-        assert!((1..1000).all(|i| at(i as f32 * 0.01) >= at((i - 1) as f32 * 0.01)));
+    fn grain_has_the_wanted_spread_and_no_pattern() {
+        let mut noise = [0.0; TILE * TILE];
+        let (mut sum, mut squares, mut neighbours, mut count) = (0.0, 0.0, 0.0, 0.0);
+        for tile in 0..64 {
+            grain::<4>(0.02, 7, [tile % 8 * 32, tile / 8 * 32], &mut noise);
+            for (pair, v) in noise.windows(2).zip(noise.map(f64::from)) {
+                (sum, squares, count) = (sum + v, squares + v * v, count + 1.0);
+                neighbours += f64::from(pair[0]) * f64::from(pair[1]);
+            }
+        }
+        let std = (squares / count).sqrt();
+        assert!((std - 5.1).abs() < 0.05, "{std}");
+        assert!((sum / count).abs() < 0.06 && (neighbours / squares).abs() < 0.01);
     }
 }

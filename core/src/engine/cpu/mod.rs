@@ -6,7 +6,7 @@
 //! | visibility | `chunk`, `setup`, `clip`, `bin` | -> triangles by tile |
 //! | shadow | `shadow` | -> the sun's depth map, fitted to what is seen, rastered where it is looked up |
 //! | per tile (`tile`): visibility | `raster`, `samples` | -> object, triangle and depth of each sample |
-//! | per tile: shade | `fragment`, `shade` | -> linear display light |
+//! | per tile: shade | `fragment`, `shade`, `develop` | -> linear display light |
 //! | per tile: display | `display` | -> the 8-bit picture |
 //! | per tile: resolve, reduce | `resolve`, `reduce` | -> ids, distances, counts, extents |
 //!
@@ -19,6 +19,7 @@
 mod bin;
 mod chunk;
 mod clip;
+mod develop;
 mod display;
 mod fragment;
 mod project;
@@ -38,13 +39,14 @@ use std::sync::{Mutex, PoisonError};
 use rayon::prelude::*;
 
 use self::chunk::{Chunk, ChunkList};
+use self::develop::Develop;
 use self::project::{Projection, ScreenVertex};
 use self::samples::TILE;
 use self::setup::Target;
 use self::shade::{Geometry, Lighting, Rays, Stage, Surface};
 use self::shadow::map::{ShadowMap, SunShadow};
 use self::shadow::{Bounds, ShadowView, SunAxes};
-use self::simd::{F32x8, Level};
+use self::simd::Level;
 use self::tile::{Row, Scratch, Shading, TilePass};
 use super::{Engine, EngineError, input};
 use crate::draw::DrawList;
@@ -361,15 +363,15 @@ fn shading<'a>(
     shadow: Option<SunShadow<'a>>,
 ) -> Shading<'a> {
     let view = &list.view;
-    let display = |nits: f32| display::tone_map(F32x8::<false>::splat(nits * list.exposure)).0[0];
     Shading {
         stage: Stage {
             geometry: Geometry { chunks, vertices: &placed.vertices },
             rays: Rays::new(view),
             lighting: Lighting::new(&list.lights, list.exposure, &view.view_from_world, shadow),
+            develop: Develop::new(list),
         },
         surfaces: list.materials.iter().map(|m| Surface::new(m, list)).collect(),
-        background: list.lights.background_nits.map(display),
+        background: list.lights.background_nits.map(|nits| nits * list.exposure),
     }
 }
 

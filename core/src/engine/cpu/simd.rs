@@ -122,6 +122,7 @@ macro_rules! binary {
 mod float;
 mod int;
 mod mask;
+mod power;
 mod shuffle;
 mod vec3;
 

@@ -14,7 +14,7 @@ use super::resolve::{Resolved, SampleObjects, resolve};
 use super::samples::{BLOCK, Layout, TILE};
 use super::shade::{DrawnSurface, Stage, Surface, TileColor, shade};
 use super::simd::{F32x8, LANES, Level, kernel};
-use super::{display, skin};
+use super::{develop, display, skin};
 use crate::draw::DrawList;
 use crate::plan::{ObjectSamples, StageTimes};
 
@@ -42,6 +42,8 @@ pub(super) struct Scratch {
     fragments: Fragments,
     reaching: Vec<u32>,
     color: Box<TileColor>,
+    /// Grain by pixel slot, 1/255.
+    noise: Box<[f32; TILE * TILE]>,
     bytes: Box<[[u8; 3]; TILE * TILE]>,
     objects: SampleObjects,
     resolved: Box<Resolved>,
@@ -59,6 +61,7 @@ impl Default for Scratch {
             fragments: Fragments::default(),
             reaching: Vec::new(),
             color: Box::new([[0.0; TILE * TILE]; 3]),
+            noise: Box::new([0.0; TILE * TILE]),
             bytes: Box::new([[0; 3]; TILE * TILE]),
             objects: SampleObjects::default(),
             resolved: Box::default(),
@@ -114,7 +117,7 @@ pub(super) struct TilePass<'a> {
 pub(super) struct Shading<'a> {
     pub(super) stage: Stage<'a>,
     pub(super) surfaces: Vec<Surface<'a>>,
-    /// Linear display light where nothing stands.
+    /// Exposed light where nothing stands.
     pub(super) background: [f32; 3],
 }
 
@@ -152,8 +155,14 @@ impl TilePass<'_> {
         });
         if let Some(shading) = &self.shading {
             self.shade::<S>(shading, origin_px, scratch);
+            let grade = &self.list.grade;
             scratch.measure(Step::Display, |s| {
-                display::encode(self.level, &s.color, &mut s.bytes);
+                let grainy = grade.grain > 0.0;
+                if grainy {
+                    display::grain::<S>(grade.grain, grade.grain_key, origin_px, &mut s.noise);
+                }
+                let noise = if grainy { &s.noise[..] } else { &[] };
+                display::encode(self.level, &s.color, noise, &mut s.bytes);
                 copy_out::<S, u8, 3>(tile, size, view.width, row.picture, &s.bytes);
             });
         }
@@ -198,11 +207,14 @@ impl TilePass<'_> {
                 focal_px: view.fx.max(view.fy),
             };
             s.fragments.gather::<S>(self.list.draws.len(), &visible);
-            for (sum, background) in s.color.iter_mut().zip(shading.background) {
-                for (sum, share) in sum.iter_mut().zip(&s.fragments.background) {
-                    *sum = background * share;
-                }
-            }
+            develop::start_with_background::<S>(
+                self.level,
+                &shading.stage.develop,
+                shading.background,
+                origin_px,
+                &s.fragments.background,
+                &mut s.color,
+            );
         });
         scratch.measure(Step::Shade, |s| {
             if let Some((low, high)) = self.tile_box(origin_px, &s.depth) {

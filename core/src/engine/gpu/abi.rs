@@ -24,12 +24,18 @@ pub struct Frame {
     pub ground: [f32; 3],
     pub pad1: u32,
     pub background: [f32; 3],
-    pub pad2: u32,
+    pub grain_key: u32,
     pub to_sun: [f32; 3],
     pub pad3: u32,
     pub sun_color: [f32; 3],
     pub pad4: u32,
     pub sun_axes: [[f32; 4]; 3],
+    pub grade_before: [[f32; 4]; 3],
+    pub grade_after: [[f32; 4]; 3],
+    pub vignette: f32,
+    pub contrast: f32,
+    pub grain: f32,
+    pub tone_curve: u32,
 }
 
 /// A picture that is rastered: a band of the camera's, or the sun's map.

@@ -5,10 +5,11 @@ use super::abi::{
     TRIANGLE_BATCH, Target, TriangleBatch, VERTEX_BATCH, VERTEX_WORDS, VertexBatch,
 };
 use crate::draw::DrawList;
-use crate::draw::abi::{Material, View};
-use crate::engine::pattern;
+use crate::draw::abi::{Grade, Material, View};
+use crate::engine::{noise, pattern};
 use crate::library::mesh::Mesh;
 use crate::library::texture::{Encoding, Texture};
+use crate::scene::ToneCurve;
 
 /// Which objects a frame needs, and for what.
 pub struct Wanted {
@@ -226,7 +227,7 @@ fn frame(list: &DrawList, shadow: bool) -> Frame {
         object_count: list.objects.len() as u32,
         sky: exposed(lights.sky_lux),
         ground: exposed(lights.ground_lux),
-        background: exposed(lights.background_nits).map(tone_map),
+        background: exposed(lights.background_nits),
         ..Frame::default()
     };
     if let Some(sun) = &lights.sun {
@@ -235,14 +236,27 @@ fn frame(list: &DrawList, shadow: bool) -> Frame {
         frame.sun_color = exposed(sun.color_lux);
         frame.sun_axes = sun_axes(sun.direction_to_sun).map(|[x, y, z]| [x, y, z, 0.0]);
     }
+    add_grade(&mut frame, &list.grade);
     frame
 }
 
-/// Exposed light to linear display light; the formula of `shaders/shared/display.wgsl`.
-fn tone_map(v: f32) -> f32 {
-    let x = v.clamp(0.0, 1e4);
-    let y = (x * (x * 2.51 + 0.03)) / (x * (x * 2.43 + 0.59) + 0.14);
-    y.clamp(0.0, 1.0)
+/// Adds what develops the light.
+fn add_grade(frame: &mut Frame, grade: &Grade) {
+    let rows = |m: [[f32; 3]; 3]| m.map(|[x, y, z]| [x, y, z, 0.0]);
+    if let Some(color) = &grade.color {
+        frame.grade_before = rows(color.before);
+        frame.grade_after = rows(color.after);
+        // At 0 all light becomes mid-grey, as it does at next to nothing.
+        frame.contrast = color.contrast.max(f32::MIN_POSITIVE);
+    }
+    frame.vignette = 3.0 * grade.vignette;
+    frame.grain = grade.grain / noise::GRAIN_STD;
+    frame.grain_key = noise::mixed(grade.grain_key);
+    frame.tone_curve = match grade.tone_curve {
+        ToneCurve::Aces => 0,
+        ToneCurve::Agx => 1,
+        ToneCurve::None => 2,
+    };
 }
 
 fn surface(material: &Material, list: &DrawList, textures: &[u32], object: u32) -> Surface {

@@ -305,6 +305,7 @@ impl Stage {
                 file!("shared/material.wgsl"),
                 file!("shared/sunlight.wgsl"),
                 file!("shared/light.wgsl"),
+                file!("shared/develop.wgsl"),
                 file!("shared/display.wgsl"),
                 file!("shade.wgsl"),
             ],

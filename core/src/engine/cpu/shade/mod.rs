@@ -1,7 +1,7 @@
-//! Shade: the light that the fragments of a tile send to the camera, tone-mapped and summed up.
+//! Shade: the light that the fragments of a tile send to the camera, developed and summed up.
 //!
 //! Reads fragments, placed vertices, materials, textures, lights and the shadow map; adds to the
-//! tile's colours. Tone mapping comes before the sum over a pixel's fragments, so that a bright
+//! tile's colours. Developing comes before the sum over a pixel's fragments, so that a bright
 //! edge stays smooth; the sum is made in linear display light.
 
 mod light;
@@ -9,7 +9,7 @@ mod material;
 mod surface;
 mod texture;
 
-use super::display::tone_map;
+use super::develop::Develop;
 use super::fragment::Bucket;
 use super::samples::TILE;
 use super::simd::{F32x8, LANES, Vec3x8, kernel};
@@ -34,6 +34,7 @@ pub(super) struct Stage<'a> {
     pub(super) geometry: Geometry<'a>,
     pub(super) rays: Rays,
     pub(super) lighting: Lighting<'a>,
+    pub(super) develop: Develop,
 }
 
 /// What the fragments of one draw share.
@@ -80,7 +81,9 @@ fn shade_body<const AVX2: bool>(
         surface.look(points, looks);
         stage.lighting.reflected(points, looks, (surface.metallic, surface.wrap), reaching, light);
         for (group, light) in light.iter().enumerate() {
-            add_to_picture(*light, fragments, (first + group) * LANES, color);
+            let first = (first + group) * LANES;
+            let at = [F32x8::load(&fragments.x[first..]), F32x8::load(&fragments.y[first..])];
+            add_to_picture(stage.develop.display(*light, at), fragments, first, color);
         }
         first += count;
     }
@@ -125,8 +128,7 @@ fn add_to_picture<const AVX2: bool>(
     let start = usize::from(slots[0]);
     let strayed =
         slots.iter().zip(slots[0]..).fold(0, |strayed, (slot, next)| strayed | (slot ^ next));
-    let channels = [tone_map(light.x), tone_map(light.y), tone_map(light.z)];
-    for (sum, value) in color.iter_mut().zip(channels) {
+    for (sum, value) in color.iter_mut().zip([light.x, light.y, light.z]) {
         let value: F32x8<AVX2> = value * weight;
         if strayed == 0 {
             // Neighbouring pixels, as nearly everywhere within surfaces.

@@ -48,6 +48,9 @@ fn every_operation_body<const AVX2: bool>(
     out.push((mask | other).select(a, b).0.map(f32::to_bits));
     out.push((mask & other).select_u32(7, [9; LANES]));
     out.push([u32::from(mask.any()); LANES]);
+    for v in [(a * a + F32x8::splat(1e-9)).log2(), b.exp2(), (a * a + F32x8::ONE).powf(0.7)] {
+        out.push(v.0.map(f32::to_bits));
+    }
     out.push([a.smallest().to_bits(); LANES]);
     out.push([a.largest().to_bits(); LANES]);
     let (i, j) = (a.round_i32(), b.to_bits());

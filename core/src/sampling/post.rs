@@ -1,0 +1,29 @@
+//! Exposure, and what else happens to the light behind the lens.
+
+use super::keys;
+use super::value::number;
+use crate::base::rng::Draws;
+use crate::document;
+use crate::scene::Post;
+
+pub(super) fn exposure_ev100(post: &document::Post, draws: Draws) -> f64 {
+    let draws = draws.random_if(post.enabled);
+    number(&post.exposure_ev, draws.of(keys::EXPOSURE, 0))
+        - number(&post.compensation_ev, draws.of(keys::COMPENSATION, 0))
+}
+
+pub(super) fn post(post: &document::Post, draws: Draws) -> Post {
+    if !post.enabled {
+        return Post { tone_curve: post.tone_curve, ..Post::default() };
+    }
+    let of = |param, key| number(param, draws.of(key, 0));
+    Post {
+        vignette: of(&post.vignette, keys::VIGNETTE),
+        white_balance_temperature: of(&post.white_balance_temperature, keys::TEMPERATURE),
+        white_balance_tint: of(&post.white_balance_tint, keys::TINT),
+        contrast: of(&post.contrast, keys::CONTRAST),
+        saturation: of(&post.saturation, keys::SATURATION),
+        tone_curve: post.tone_curve,
+        grain: of(&post.grain, keys::GRAIN),
+    }
+}
