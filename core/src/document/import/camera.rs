@@ -20,8 +20,8 @@ pub(super) fn camera(fields: &mut Fields<'_>, document: &mut Document) {
         (_, Some(law)) => camera.fov_vertical_deg = law.param(),
         (_, None) => {}
     }
-    let why = "the seed's camera is not in physical mode: the focal length changes its depth of \
-        field alone, which is hardly seen and not available here";
+    let why = "the camera of PeopleSansPeople is not in physical mode: the focal length changes \
+        its depth of field alone, which is hardly seen and not available here";
     fields.left_out("usePhysicalCamera", why);
     fields.left_out("cameraFocalLengthParameter", why);
     let (position, rotation) = ("camera.position_offset_m", "camera.rotation_offset_deg");
@@ -61,10 +61,11 @@ pub(super) fn post_process(fields: &mut Fields<'_>, document: &mut Document) {
     fields.left_out("whiteBalanceTemperatureParameter", LATER);
     fields.left_out("contrastParameter", LATER);
     fields.left_out("saturationParameter", LATER);
-    let inactive = |what| format!("{what} is not active in the seed's scene: no effect");
+    let inactive =
+        |what| format!("{what} is not active in the scene of PeopleSansPeople: no effect");
     fields.left_out("filmGrainIntensityParameter", &inactive("film grain"));
     fields.left_out("lensDistortionIntensityParameter", &inactive("lens distortion"));
-    let focus = "depth of field is hardly seen in the seed's pictures and not available here";
+    let focus = "depth of field is hardly seen in PeopleSansPeople and not available here";
     fields.left_out("focusDistanceParameter", focus);
 }
 

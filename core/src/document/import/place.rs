@@ -224,7 +224,7 @@ pub(super) fn pose_off(document: &mut Document) {
 }
 
 pub(super) fn clothes(fields: &mut Fields<'_>, document: &mut Document) {
-    let why = "the seed's script never reads it: hues are from 0 to 360 degrees, as here";
+    let why = "PeopleSansPeople never reads it: it draws hues from 0 to 360 degrees, as here";
     fields.left_out("hueTop", why);
     fields.left_out("hueBottom", why);
     let wardrobe = &mut document.people.wardrobe;

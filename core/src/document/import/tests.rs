@@ -1,6 +1,8 @@
+use glam::{DMat3, DVec3};
 use serde_json::{Value, json};
 
 use super::*;
+use crate::base::math::rotation_from_euler_deg;
 use crate::document::Problem;
 use crate::document::{
     Choice, Color, ColorLaw, Distribution, Flag, Normal, Param, Placement, PoissonDisk, Rotation,
@@ -207,6 +209,41 @@ fn cameras_and_lamps_move_by_their_formulas() {
         let unit = || Param::uniform(0.0, 1.0);
         assert_eq!(*color, Color::Srgb([unit(), Param::uniform(0.4, 1.0), unit()]));
     }
+}
+
+/// The scenario's matrices, mirrored in x as a whole, against ours from the imported angles.
+#[test]
+fn turned_objects_and_cameras_are_mirror_images() {
+    let constant = |value: f64| json!({"constant": {"value": value}});
+    let d = document(&[
+        group(
+            "RotationRandomizer",
+            json!({"rotation": params(json!({"x": constant(20.0), "y": constant(50.0),
+                "z": constant(-70.0)}))}),
+        ),
+        group(
+            "CustomCameraRandomizer",
+            json!({"changeCameraRotation": num(3.0), "randomFloat": param(constant(1.0))}),
+        ),
+    ]);
+    let matrix = |[x, y, z]: [f64; 3]| DMat3::from_quat(rotation_from_euler_deg(x, y, z));
+    let angles = |params: &[Param; 3]| {
+        let angle = |p: &Param| match p {
+            Param::Constant(angle) => *angle,
+            Param::Random(_) => panic!("{p:?}"),
+        };
+        [0, 1, 2].map(|i| angle(&params[i]))
+    };
+    let mirror = DMat3::from_diagonal(DVec3::new(-1.0, 1.0, 1.0));
+    let Rotation::Euler(params) = &d.occluders.rotation_deg else { panic!("{d:?}") };
+    let expected = mirror * matrix([20.0, 50.0, -70.0]) * mirror;
+    assert!(matrix(angles(params)).abs_diff_eq(expected, 1e-12), "{params:?}");
+    // Their camera looks down its +Z, ours down its -Z; both have x to the right of the picture.
+    let theirs = matrix([15.0, 180.0 + 15.0, 15.0]);
+    let expected = mirror * theirs * DMat3::from_diagonal(DVec3::new(1.0, 1.0, -1.0));
+    let ours = angles(&d.camera.rotation_offset_deg);
+    assert!(matrix(ours).abs_diff_eq(expected, 1e-12), "{ours:?}");
+    assert_eq!(d.camera.position_offset_m, Vector::constant(-5.0, 5.0, 5.0));
 }
 
 #[test]
