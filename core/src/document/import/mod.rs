@@ -212,9 +212,7 @@ fn randomizers(groups: &[Group], document: &mut Document, log: &mut Log) {
         .collect();
     if !missing.is_empty() {
         let what = format!(
-            "{} of the randomizers of PeopleSansPeople are not in the file; their fields keep its \
-             values: {}",
-            missing.len(),
+            "these of PeopleSansPeople are not in the file, and their fields keep its values: {}",
             missing.join(", ")
         );
         log.note("randomizers", what);

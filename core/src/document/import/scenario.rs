@@ -62,6 +62,9 @@ pub(super) struct Component {
     pub(super) law: Law,
 }
 
+/// Larger files are no scenarios: each randomizer stands in one once.
+const MAX_GROUPS: usize = 1000;
+
 /// Constants of all versions.
 const CONSTANTS: [&str; 7] = [
     "framesPerIteration",
@@ -181,7 +184,8 @@ impl Reader<'_> {
             (Some(list), None) => self.listed(list),
             (None, Some(by_id)) => {
                 let path = "randomizers.groups";
-                let all = self.object(by_id, path).into_iter().flatten();
+                let all = self.object(by_id, path);
+                let all = all.filter(|all| self.few(all.len(), path)).into_iter().flatten();
                 all.filter_map(|(id, group)| self.group(id.clone(), group, join(path, id)))
                     .collect()
             }
@@ -202,6 +206,9 @@ impl Reader<'_> {
             self.log.problem(path, format!("expected a list [ ], got {}", show(value)));
             return Vec::new();
         };
+        if !self.few(list.len(), path) {
+            return Vec::new();
+        }
         let mut groups = Vec::new();
         for (i, group) in list.iter().enumerate() {
             let path = format!("{path}[{i}]");
@@ -223,6 +230,14 @@ impl Reader<'_> {
             }
         }
         groups
+    }
+
+    fn few(&mut self, groups: usize, path: &str) -> bool {
+        if groups > MAX_GROUPS {
+            let message = format!("must hold at most {MAX_GROUPS} randomizers, got {groups}");
+            self.log.problem(path, message);
+        }
+        groups <= MAX_GROUPS
     }
 
     /// A scenario has one randomizer of a kind.

@@ -314,7 +314,8 @@ fn groups_by_id_are_read_as_well() {
     let imported = scenario(&text).unwrap();
     assert_eq!(imported.document.people.scale, Param::uniform(1.0, 2.0));
     let [note] = imported.notes.as_slice() else { panic!("{:#?}", imported.notes) };
-    assert!(note.message.starts_with("14 of the randomizers"), "{note}");
+    assert!(note.message.contains("keep its values: CustomBackgroundObject"), "{note}");
+    assert_eq!(note.message.matches("Randomizer").count(), 14, "{note}");
 }
 
 #[test]
@@ -553,6 +554,9 @@ fn wrong_frames_are_refused_with_their_path() {
         let found = problems(&text.to_string());
         assert_eq!(found[0].path, path, "{found:#?}");
     }
+    let many: Vec<Value> = (0..1001).map(|i| off(&format!("R{i}"))).collect();
+    let found = problems(&of(&many));
+    assert!(found[0].to_string().contains("at most 1000 randomizers, got 1001"), "{found:#?}");
     let twins = [off("TextureRandomizer"), off("HueOffsetRandomizer"), off("TextureRandomizer")];
     assert_eq!(problems(&of(&twins))[0].path, "randomizers.randomizerGroups[2]");
 }
