@@ -8,7 +8,7 @@ use std::fs;
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 
-use figurant::road::{Adapter, Job, LoadError, Road, Simd, Wishes};
+use figurant::road::{Adapter, Import, Job, LoadError, Road, Simd, Wishes};
 use figurant::{Console, Exit, Stop};
 use figurant_core::document::cast::Member;
 use figurant_core::export::{DatasetInfo, PictureFormat};
@@ -153,6 +153,7 @@ impl Atelier {
 
 impl Road for Atelier {
     type Document = Value;
+    type Config = Value;
     type Maker = Painter;
 
     fn schema(&self) -> Value {
@@ -171,6 +172,29 @@ impl Road for Atelier {
             return Ok(Self::job(&value, wishes));
         }
         Err(LoadError::Invalid(unknown.iter().map(|key| format!("{key}: no such field")).collect()))
+    }
+
+    /// A scenario is a JSON object as well: it becomes a config but for what begins with `unity`.
+    fn import(&self, scenario: &Path) -> Result<Import<Value>, LoadError> {
+        let unreadable =
+            |e| LoadError::Unreadable(format!("cannot read {}: {e}", scenario.display()));
+        let text = fs::read_to_string(scenario).map_err(unreadable)?;
+        let mut value: Value = serde_json::from_str(&text)
+            .map_err(|e| LoadError::Invalid(vec![format!("scenario: {e}")]))?;
+        let map = value.as_object_mut().unwrap();
+        let foreign = |key: &&String| key.starts_with("unity");
+        let foreign: Vec<String> = map.keys().filter(foreign).cloned().collect();
+        foreign.iter().for_each(|key| drop(map.remove(key)));
+        let notes = foreign.iter().map(|key| format!("{key}: is left out")).collect();
+        Ok(Import { document: value, notes })
+    }
+
+    fn text(&self, config: &Value) -> String {
+        format!("{config:#}\n")
+    }
+
+    fn ready(&self, config: Value, wishes: &Wishes) -> Result<Job<Value>, LoadError> {
+        Ok(Self::job(&config, wishes))
     }
 
     fn people(&self, job: &Job<Value>, frame: Option<u32>) -> Result<Vec<(u32, Member)>, String> {
@@ -313,6 +337,64 @@ fn arguments_reach_the_frames() {
         (&json!(40), &json!(20), &json!(5))
     );
     assert!(!desk.path("out/images").exists());
+}
+
+#[test]
+fn a_scenario_is_imported() {
+    let desk = Desk::new(&json!({"frames": 2, "unityLayer": 1, "unityTag": 2}));
+    let ran = desk.run("import @c.json");
+    assert_eq!(ran.exit, Exit::Done, "{}", ran.err);
+    assert_eq!(serde_json::from_str::<Value>(&ran.out).unwrap(), json!({"frames": 2}));
+    assert_eq!(ran.err, "note: unityLayer: is left out\nnote: unityTag: is left out\n");
+    let ran = desk.run("import @c.json --out @own.json");
+    assert_eq!((ran.exit, ran.out.as_str()), (Exit::Done, ""));
+    assert_eq!(desk.json("own.json"), json!({"frames": 2}));
+    assert!(ran.err.contains("note: unityTag") && ran.err.contains("own.json"), "{}", ran.err);
+    fs::write(desk.path("own.json"), "mine").unwrap();
+    let ran = desk.run("import @c.json --out @own.json");
+    assert_eq!(ran.exit.code(), 2);
+    assert!(ran.err.contains("--overwrite"), "{}", ran.err);
+    assert_eq!(desk.text("own.json"), "mine");
+    let ran = desk.run("import @c.json --out @own.json --overwrite");
+    assert_eq!((ran.exit, desk.json("own.json")), (Exit::Done, json!({"frames": 2})));
+    let ran = desk.run("import @none.json");
+    assert_eq!((ran.exit.code(), ran.out.as_str()), (2, ""));
+    assert!(ran.err.contains("none.json"), "{}", ran.err);
+}
+
+#[test]
+fn a_scenario_is_exported_in_one_step() {
+    let desk = Desk::new(&json!({"frames": 2, "unityTag": 2}));
+    let equals =
+        format!("export --scenario-config-file={} --out @b", desk.path("c.json").display());
+    for (out, line) in [("a", "export --scenario-config-file @c.json --out @a"), ("b", &equals)] {
+        let ran = desk.run(line);
+        assert_eq!(ran.exit, Exit::Done, "{line}: {}", ran.err);
+        assert!(ran.err.starts_with("note: unityTag: is left out\n"), "{line}: {}", ran.err);
+        assert_eq!(desk.json(&format!("{out}/config.json")), json!({"frames": 2}));
+        let manifest = desk.json(&format!("{out}/manifest.json"));
+        assert_eq!(manifest["frames_done"], json!([[0, 2]]), "{line}");
+    }
+    let more = |style: &str| {
+        let export =
+            "export --scenario-config-file @c.json --out @c --overwrite --seed 8 --frames 1";
+        desk.run(&format!("{export} --progress {style}"))
+    };
+    assert_eq!(more("none").err, "");
+    let ran = more("json");
+    let first: Value = serde_json::from_str(ran.err.lines().next().unwrap()).unwrap();
+    assert_eq!(first, json!({"event": "note", "text": "unityTag: is left out"}));
+    assert_eq!(desk.json("c/manifest.json")["seed"], 8);
+    for (line, expected) in [
+        ("export @c.json --scenario-config-file @c.json --out @d", "cannot be used with"),
+        ("export --out @d", "CONFIG"),
+        ("export --scenario-config-file @none.json --out @d", "none.json"),
+    ] {
+        let ran = desk.run(line);
+        assert_eq!(ran.exit.code(), 2, "{line}");
+        assert!(ran.err.contains(expected), "{line}: {}", ran.err);
+        assert!(!desk.path("d").exists(), "{line}");
+    }
 }
 
 #[test]

@@ -33,6 +33,8 @@ pub enum Command {
     Export(ExportArgs),
     /// Render one frame to a PNG file.
     Frame(FrameArgs),
+    /// Make a config of a scenario file of PeopleSansPeople or Unity Perception 0.9 to 1.0.
+    Import(ImportArgs),
     /// Make a page of pictures from a list of configs.
     Gallery(GalleryArgs),
     /// Write the people of a config as files, to be edited and listed in configs.
@@ -80,7 +82,11 @@ impl Changes {
 #[derive(Debug, ClapArgs)]
 pub struct ExportArgs {
     /// The config.
-    pub config: PathBuf,
+    #[arg(required_unless_present = "scenario_config_file")]
+    pub config: Option<PathBuf>,
+    /// A scenario file of PeopleSansPeople or Unity Perception, instead of a config.
+    #[arg(long, value_name = "PATH", conflicts_with = "config")]
+    pub scenario_config_file: Option<PathBuf>,
     /// Folder of the data set; made if it does not exist.
     #[arg(long, value_name = "DIR")]
     pub out: PathBuf,
@@ -101,6 +107,18 @@ pub struct ExportArgs {
     pub progress: Style,
     #[command(flatten)]
     pub changes: Changes,
+}
+
+#[derive(Debug, ClapArgs)]
+pub struct ImportArgs {
+    /// The scenario, a JSON file.
+    pub scenario: PathBuf,
+    /// File of the config; standard output by default.
+    #[arg(long, value_name = "FILE.json")]
+    pub out: Option<PathBuf>,
+    /// Replace the file if it is there.
+    #[arg(long)]
+    pub overwrite: bool,
 }
 
 #[derive(Debug, ClapArgs)]

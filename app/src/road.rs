@@ -84,6 +84,15 @@ pub struct Job<D> {
     pub simd: Simd,
 }
 
+/// A config that was made of a scenario of Unity Perception.
+#[derive(Clone, Debug)]
+pub struct Import<D> {
+    /// The config.
+    pub document: D,
+    /// A line on each thing in the scenario that was left out or changed.
+    pub notes: Vec<String>,
+}
+
 /// Why a config cannot be rendered.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum LoadError {
@@ -102,6 +111,8 @@ pub enum LoadError {
 pub trait Road: Sync {
     /// A loaded config with what it draws from.
     type Document: Sync;
+    /// A config by itself.
+    type Config;
     /// What makes its frames.
     type Maker: FrameMaker<Error: Send + 'static>;
 
@@ -113,6 +124,25 @@ pub trait Road: Sync {
     /// # Errors
     /// When the file or an asset cannot be read, or something in it is wrong.
     fn load(&self, config: &Path, wishes: &Wishes) -> Result<Job<Self::Document>, LoadError>;
+
+    /// Reads a scenario file of Unity Perception as a config.
+    ///
+    /// # Errors
+    /// When the file cannot be read, or something in it is wrong.
+    fn import(&self, scenario: &Path) -> Result<Import<Self::Config>, LoadError>;
+
+    /// The text of a config's file.
+    fn text(&self, config: &Self::Config) -> String;
+
+    /// Makes such a config ready, with the wishes applied.
+    ///
+    /// # Errors
+    /// When something in it is wrong, or what renders cannot be had.
+    fn ready(
+        &self,
+        config: Self::Config,
+        wishes: &Wishes,
+    ) -> Result<Job<Self::Document>, LoadError>;
 
     /// The people who recur over the frames of a config with their identities, or those who stand
     /// in one frame with their instance ids, as configs can list them.

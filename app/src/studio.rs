@@ -7,6 +7,7 @@ use std::sync::Arc;
 use figurant_core::document::cast::Member;
 use figurant_core::document::cast::file::{Settled, Source, read_all};
 use figurant_core::document::file::{self, FileError};
+use figurant_core::document::import::{self, ImportError};
 use figurant_core::document::{self, Document, ImageFormat, presets};
 use figurant_core::draw::Cast;
 use figurant_core::engine::Engine;
@@ -20,7 +21,7 @@ use figurant_core::library::{Library, NO_LICENCE};
 use figurant_core::plan::Outputs;
 use figurant_core::sampling::Sampler;
 
-use crate::road::{Adapter, EngineKind, EngineWish, Job, LoadError, Road, Simd, Wishes};
+use crate::road::{Adapter, EngineKind, EngineWish, Import, Job, LoadError, Road, Simd, Wishes};
 
 /// The road that the program itself walks.
 #[derive(Clone, Copy, Debug, Default)]
@@ -86,6 +87,7 @@ impl Loaded {
 
 impl Road for Native {
     type Document = Loaded;
+    type Config = Document;
     type Maker = Studio;
 
     fn schema(&self) -> serde_json::Value {
@@ -104,6 +106,31 @@ impl Road for Native {
             LoadError::Invalid(problems.0.iter().map(ToString::to_string).collect())
         })?;
         prepare(document, sources, &folders, wishes)
+    }
+
+    fn import(&self, scenario: &Path) -> Result<Import<Document>, LoadError> {
+        let imported = import::load(scenario).map_err(|error| match error {
+            ImportError::Invalid(problems) => {
+                LoadError::Invalid(problems.0.iter().map(ToString::to_string).collect())
+            }
+            // These name the file themselves.
+            ImportError::Io { .. } | ImportError::Folder(_) => {
+                LoadError::Unreadable(error.to_string())
+            }
+            ImportError::TooLarge | ImportError::NotJson(_) | ImportError::NotAScenario(_) => {
+                LoadError::Unreadable(format!("{}: {error}", scenario.display()))
+            }
+        })?;
+        let notes = imported.notes.iter().map(ToString::to_string).collect();
+        Ok(Import { document: imported.document, notes })
+    }
+
+    fn text(&self, config: &Document) -> String {
+        file::text(config)
+    }
+
+    fn ready(&self, config: Document, wishes: &Wishes) -> Result<Job<Loaded>, LoadError> {
+        prepare(config, Vec::new(), &[], wishes)
     }
 
     fn people(&self, job: &Job<Loaded>, frame: Option<u32>) -> Result<Vec<(u32, Member)>, String> {

@@ -1,4 +1,4 @@
-//! `figurant export`: a data set.
+//! `figurant export`: a data set, of a config or of a scenario of Unity Perception.
 
 use std::num::NonZeroUsize;
 
@@ -6,9 +6,10 @@ use figurant_core::export::{Dataset, Existing};
 use figurant_core::job::batch::{self, BatchError, Order};
 
 use crate::args::ExportArgs;
+use crate::commands::import::show_notes;
 use crate::commands::{not_loaded, processors};
 use crate::report::Reporter;
-use crate::road::{Road, Wishes};
+use crate::road::{Job, Road, Wishes};
 use crate::{Console, Exit, Failure, Stop};
 
 /// Writes it.
@@ -19,7 +20,7 @@ pub fn run<R: Road>(
     stop: &Stop,
 ) -> Result<Exit, Failure> {
     let wishes = Wishes::from(&args.changes).only(args.only.iter().copied());
-    let job = road.load(&args.config, &wishes).map_err(|e| not_loaded(&args.config, e))?;
+    let job = job(road, args, &wishes, console)?;
     let frames = args.frames.clone().unwrap_or(0..job.frames);
     let existing = if args.overwrite { Existing::Overwrite } else { Existing::Refuse };
     let dataset = Dataset::create(&args.out, job.info.clone(), existing).map_err(Failure::input)?;
@@ -48,4 +49,22 @@ pub fn run<R: Road>(
     } else {
         Exit::SomeFailed
     })
+}
+
+/// What is to be exported, from whichever file was named.
+fn job<R: Road>(
+    road: &R,
+    args: &ExportArgs,
+    wishes: &Wishes,
+    console: &mut Console<'_>,
+) -> Result<Job<R::Document>, Failure> {
+    match (&args.config, &args.scenario_config_file) {
+        (Some(config), _) => road.load(config, wishes).map_err(|e| not_loaded(config, e)),
+        (None, Some(scenario)) => {
+            let import = road.import(scenario).map_err(|e| not_loaded(scenario, e))?;
+            show_notes(&import.notes, args.progress, console);
+            road.ready(import.document, wishes).map_err(|e| not_loaded(scenario, e))
+        }
+        (None, None) => Err(Failure::input("name a config, or give --scenario-config-file PATH")),
+    }
 }

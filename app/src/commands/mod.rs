@@ -11,6 +11,7 @@ pub mod doctor;
 pub mod export;
 pub mod frame;
 pub mod gallery;
+pub mod import;
 pub mod people;
 pub mod schema;
 pub mod validate;

@@ -5,9 +5,10 @@
 //! PeopleSansPeople (Ebadi et al. 2021, table "Domain Randomization Parameters"), with its
 //! left-handed coordinates mirrored in x.
 //!
-//! [`mod@file`] reads and writes documents, [`mod@cast`] holds people who are listed in them,
-//! [`mod@check`] compares their form with the schema, and [`validate()`] says which values make no
-//! sense. Each problem names its field.
+//! [`mod@file`] reads and writes documents, [`mod@import`] makes them from the scenarios of Unity
+//! Perception, [`mod@cast`] holds people who are listed in them, [`mod@check`] compares their form
+//! with the schema, and [`validate()`] says which values make no sense. Each problem names its
+//! field.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -18,6 +19,7 @@ pub mod check;
 mod face;
 pub mod file;
 mod format;
+pub mod import;
 mod lights;
 mod output;
 mod param;

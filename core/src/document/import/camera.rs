@@ -1,0 +1,75 @@
+//! Randomizers of the camera and of what happens behind its lens.
+
+use super::fields::Fields;
+use super::law::Law;
+use super::light::moved;
+use crate::document::{Document, Param, Vector};
+
+/// Vertical field of view of the camera in the seed's scene, degrees.
+const SCENE_FOV_DEG: f64 = 60.0;
+
+pub(super) fn camera(fields: &mut Fields<'_>, document: &mut Document) {
+    let camera = &mut document.camera;
+    camera.enabled = true;
+    let fov = fields.law("cameraFieldOfViewParameter", "camera.fov_vertical_deg");
+    match (fields.flag("useVariableFieldOfView"), fov) {
+        (Some(false), _) => {
+            camera.fov_vertical_deg = Param::Constant(SCENE_FOV_DEG);
+            fields.note("useVariableFieldOfView is false: the field of view is that of the scene");
+        }
+        (_, Some(law)) => camera.fov_vertical_deg = law.param(),
+        (_, None) => {}
+    }
+    let why = "the camera of PeopleSansPeople is not in physical mode: the focal length changes \
+        its depth of field alone, which is hardly seen and not available here";
+    fields.left_out("usePhysicalCamera", why);
+    fields.left_out("cameraFocalLengthParameter", why);
+    let (position, rotation) = ("camera.position_offset_m", "camera.rotation_offset_deg");
+    let moves = fields.flag("useMovingCamera").unwrap_or(true);
+    let turns = fields.flag("useRotatingCamera").unwrap_or(true);
+    fields.shared("randomFloat", rotation);
+    let amount = fields.law("randomFloat", position).unwrap_or(Law::Uniform(0.0, 1.0));
+    fields.shared("multiplyFactor", rotation);
+    let factor = fields.number("multiplyFactor", position).unwrap_or(5.0);
+    let move_m = fields.number("changeCameraPosition", position).unwrap_or(1.0);
+    let turn_deg = fields.number("changeCameraRotation", rotation).unwrap_or(1.0);
+    camera.position_offset_m = moved(&amount, if moves { move_m * factor } else { 0.0 });
+    // The seed's camera looks down -Z by a half turn about y; ours does unturned. Mirrored in x,
+    // pitch and yaw then have the opposite sense and roll keeps its own.
+    let reach = if turns { turn_deg * factor } else { 0.0 };
+    camera.rotation_offset_deg = [-reach, -reach, reach].map(|reach| amount.either_way(reach));
+}
+
+/// As it stands in the seed's scene.
+pub(super) fn camera_off(document: &mut Document) {
+    let camera = &mut document.camera;
+    camera.enabled = false;
+    camera.fov_vertical_deg = Param::Constant(SCENE_FOV_DEG);
+    camera.position_offset_m = Vector::constant(0.0, 0.0, 0.0);
+    camera.rotation_offset_deg = [0.0; 3].map(Param::Constant);
+}
+
+const LATER: &str = "is to be mapped: `post` has no such field yet";
+
+pub(super) fn post_process(fields: &mut Fields<'_>, document: &mut Document) {
+    let post = &mut document.post;
+    post.enabled = true;
+    if let Some(law) = fields.law("fixedExposureParameter", "post.exposure_ev") {
+        post.exposure_ev = law.param();
+    }
+    fields.left_out("vignetteIntensityParameter", LATER);
+    fields.left_out("whiteBalanceTemperatureParameter", LATER);
+    fields.left_out("contrastParameter", LATER);
+    fields.left_out("saturationParameter", LATER);
+    let inactive =
+        |what| format!("{what} is not active in the scene of PeopleSansPeople: no effect");
+    fields.left_out("filmGrainIntensityParameter", &inactive("film grain"));
+    fields.left_out("lensDistortionIntensityParameter", &inactive("lens distortion"));
+    let focus = "depth of field is hardly seen in PeopleSansPeople and not available here";
+    fields.left_out("focusDistanceParameter", focus);
+}
+
+/// As the seed's scene has it.
+pub(super) fn post_process_off(document: &mut Document) {
+    document.post.exposure_ev = Param::Constant(10.0);
+}
