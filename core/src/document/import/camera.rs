@@ -49,18 +49,22 @@ pub(super) fn camera_off(document: &mut Document) {
     camera.rotation_offset_deg = [0.0; 3].map(Param::Constant);
 }
 
-const LATER: &str = "is to be mapped: `post` has no such field yet";
-
 pub(super) fn post_process(fields: &mut Fields<'_>, document: &mut Document) {
     let post = &mut document.post;
     post.enabled = true;
-    if let Some(law) = fields.law("fixedExposureParameter", "post.exposure_ev") {
-        post.exposure_ev = law.param();
+    let white_balance = &mut post.white_balance_temperature;
+    let mapped = [
+        ("fixedExposureParameter", "post.exposure_ev", &mut post.exposure_ev),
+        ("vignetteIntensityParameter", "post.vignette", &mut post.vignette),
+        ("whiteBalanceTemperatureParameter", "post.white_balance_temperature", white_balance),
+        ("contrastParameter", "post.contrast", &mut post.contrast),
+        ("saturationParameter", "post.saturation", &mut post.saturation),
+    ];
+    for (theirs, ours, param) in mapped {
+        if let Some(law) = fields.law(theirs, ours) {
+            *param = law.param();
+        }
     }
-    fields.left_out("vignetteIntensityParameter", LATER);
-    fields.left_out("whiteBalanceTemperatureParameter", LATER);
-    fields.left_out("contrastParameter", LATER);
-    fields.left_out("saturationParameter", LATER);
     let inactive =
         |what| format!("{what} is not active in the scene of PeopleSansPeople: no effect");
     fields.left_out("filmGrainIntensityParameter", &inactive("film grain"));
@@ -71,5 +75,14 @@ pub(super) fn post_process(fields: &mut Fields<'_>, document: &mut Document) {
 
 /// As the seed's scene has it.
 pub(super) fn post_process_off(document: &mut Document) {
-    document.post.exposure_ev = Param::Constant(10.0);
+    let post = &mut document.post;
+    post.exposure_ev = Param::Constant(10.0);
+    for param in [
+        &mut post.vignette,
+        &mut post.white_balance_temperature,
+        &mut post.contrast,
+        &mut post.saturation,
+    ] {
+        *param = Param::Constant(0.0);
+    }
 }

@@ -122,7 +122,7 @@ pub(super) const RANDOMIZERS: [Randomizer; 27] = [
         "CustomPostProcessVolumeRandomizer",
         camera::post_process,
         camera::post_process_off,
-        "post is as in the scene: an exposure value of 10",
+        "post is as in the scene: an exposure value of 10 and no other effect",
     ),
     perceptions(
         "CustomNormalForegroundObjectPlacementRandomizer",

@@ -110,6 +110,10 @@ fn other_document() -> Document {
     moving.position_offset_m = Vector::constant(1.0, 1.0, 1.0);
     d.post.enabled = false;
     d.post.exposure_ev = Param::Constant(3.0);
+    d.post.vignette = Param::Constant(0.1);
+    d.post.white_balance_temperature = Param::Constant(1.0);
+    d.post.contrast = Param::Constant(2.0);
+    d.post.saturation = Param::Constant(3.0);
     d
 }
 
@@ -134,10 +138,6 @@ fn what_the_seeds_file_says_in_vain_is_noted() {
         at(11, "cameraFocalLengthParameter"),
         at(13, "useRotatingLight"),
         at(13, "changeLightRotation"),
-        at(14, "vignetteIntensityParameter"),
-        at(14, "whiteBalanceTemperatureParameter"),
-        at(14, "contrastParameter"),
-        at(14, "saturationParameter"),
         at(14, "filmGrainIntensityParameter"),
         at(14, "lensDistortionIntensityParameter"),
         at(14, "focusDistanceParameter"),
@@ -263,6 +263,7 @@ fn what_is_switched_off_is_as_in_the_seeds_scene() {
     assert_eq!(d.lights.points[5].on, Flag::Always(true));
     assert_eq!(d.lights.moving.position_m, Vector::constant(0.0, 7.0, 5.5));
     assert_eq!(d.post.exposure_ev, Param::Constant(10.0));
+    assert_eq!((d.post.vignette, d.post.contrast), (0.0.into(), 0.0.into()));
     assert!(matches!(d.lights.sun.direction, SunDirection::Angles(_)));
 }
 

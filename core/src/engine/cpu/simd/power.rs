@@ -20,7 +20,8 @@ impl<const AVX2: bool> I32x8<AVX2> {
 }
 
 impl<const AVX2: bool> F32x8<AVX2> {
-    /// The logarithm to base 2 of positive normal numbers, within 1.2e-7 of it, or of 1: `2 artanh((m - 1) / (m + 1)) / ln 2` of the significand, as a series.
+    /// The logarithm to base 2 of positive normal numbers, to 1.2e-7 of the larger of it and 1:
+    /// `2 artanh((m - 1) / (m + 1)) / ln 2` of the significand, as a series.
     #[inline(always)]
     pub(in crate::engine::cpu) fn log2(self) -> Self {
         let s = Self::splat;
