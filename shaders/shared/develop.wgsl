@@ -17,8 +17,8 @@ fn graded(light: vec3<f32>) -> vec3<f32> {
     if frame.contrast == 1.0 {
         return v;
     }
-    let steps = log2(clamp(v, vec3<f32>(1e-9), vec3<f32>(1e9)) * (1.0 / 0.18)) * frame.contrast;
-    return times(frame.grade_after, exp2(clamp(steps, vec3<f32>(-126.0), vec3<f32>(126.0))) * 0.18);
+    let steps = log2(clamp(v, vec3<f32>(1e-9), vec3<f32>(1e9))) * frame.contrast;
+    return times(frame.grade_after, exp2(steps));
 }
 
 fn aces(v: vec3<f32>) -> vec3<f32> {

@@ -198,7 +198,7 @@ pub struct Grade {
     pub grain_key: u32,
 }
 
-/// `after (0.18 (before v / 0.18)^contrast)`, with negative components cut before the power.
+/// `after (before v)^contrast`, component by component, with negative ones cut before the power.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ColorGrade {
     /// Rows of a matrix; all of the grade where the contrast is 1.

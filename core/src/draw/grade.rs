@@ -33,6 +33,8 @@ const ACESCG_FROM_LINEAR: DMat3 = DMat3::from_cols_array(&[
     0.613_097, 0.070_194, 0.020_616, 0.339_523, 0.916_354, 0.109_570, 0.047_379, 0.013_452,
     0.869_815,
 ]);
+/// Light that contrast leaves alone.
+const MID_GREY: f64 = 0.18;
 /// Luminance of ACEScg.
 const LUMA: DVec3 = DVec3::new(0.272_228_7, 0.674_081_8, 0.053_689_5);
 
@@ -62,8 +64,9 @@ fn color(post: &Post) -> Option<ColorGrade> {
     Some(if contrast == 0.0 {
         ColorGrade { before: rows(after * before), contrast: 1.0, after: rows(DMat3::IDENTITY) }
     } else {
-        let contrast = (1.0 + contrast / 100.0) as f32;
-        ColorGrade { before: rows(before), contrast, after: rows(after) }
+        let exponent = (1.0 + contrast / 100.0) as f32;
+        let (before, after) = (before * (1.0 / MID_GREY), after * MID_GREY);
+        ColorGrade { before: rows(before), contrast: exponent, after: rows(after) }
     })
 }
 
@@ -96,7 +99,7 @@ mod tests {
         let times = |m: &[[f32; 3]; 3], v: DVec3| {
             DVec3::from_array(m.map(|r| DVec3::from_array(r.map(f64::from)).dot(v)))
         };
-        let curve = |x: f64| 0.18 * libm::pow(x.max(0.0) / 0.18, f64::from(grade.contrast));
+        let curve = |x: f64| libm::pow(x.max(0.0), f64::from(grade.contrast));
         let v = times(&grade.before, v).to_array().map(curve);
         times(&grade.after, DVec3::from_array(v))
     }

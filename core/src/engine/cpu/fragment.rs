@@ -6,7 +6,7 @@
 
 use super::chunk::{Chunk, Face, NOTHING, same_chunk, split_id};
 use super::samples::{BLOCK, Layout, TILE};
-use super::simd::LANES;
+use super::simd::{LANES, kernel};
 
 /// Cosine of the angle between faces, in 1/127 squared, below which an edge counts as a crease
 /// that must not be shaded as one: 37 degrees.
@@ -106,6 +106,24 @@ impl Visible<'_> {
     }
 }
 
+kernel! {
+    /// Finds the fragments of a tile.
+    fn gather[const S: usize](
+        fragments: &mut Fragments,
+        draws: usize,
+        tile: &Visible<'_>,
+    ) = gather_body
+}
+
+#[inline(always)]
+fn gather_body<const AVX2: bool, const S: usize>(
+    fragments: &mut Fragments,
+    draws: usize,
+    tile: &Visible<'_>,
+) {
+    fragments.gather::<S>(draws, tile);
+}
+
 impl Fragments {
     /// What was found, draw by draw: a multiple of eight fragments each, of which the last may be
     /// repeated without weight.
@@ -113,8 +131,8 @@ impl Fragments {
         &self.buckets[..self.used]
     }
 
-    /// Finds the fragments of a tile.
-    pub(super) fn gather<const S: usize>(&mut self, draws: usize, tile: &Visible<'_>) {
+    #[inline(always)]
+    fn gather<const S: usize>(&mut self, draws: usize, tile: &Visible<'_>) {
         self.used = 0;
         self.latest = (NOTHING, 0);
         self.background.resize(TILE * TILE, 0.0);

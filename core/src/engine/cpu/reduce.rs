@@ -4,10 +4,20 @@
 
 use super::resolve::SampleObjects;
 use super::samples::{BLOCK, Layout};
+use super::simd::kernel;
 use crate::plan::ObjectSamples;
 
-/// Adds the samples of a tile.
-pub(super) fn reduce<const S: usize>(
+kernel! {
+    /// Adds the samples of a tile.
+    fn reduce[const S: usize](
+        objects: &SampleObjects,
+        origin_px: [u32; 2],
+        sums: &mut [ObjectSamples],
+    ) = reduce_body
+}
+
+#[inline(always)]
+fn reduce_body<const AVX2: bool, const S: usize>(
     objects: &SampleObjects,
     origin_px: [u32; 2],
     sums: &mut [ObjectSamples],
@@ -15,15 +25,15 @@ pub(super) fn reduce<const S: usize>(
     let blocks = objects.of_sample.chunks_exact(BLOCK).zip(&objects.uniform);
     for (block, (samples, uniform)) in blocks.enumerate() {
         let xy = Layout::<S>::SLOT_XY[block * BLOCK / S];
-        let corner: [i32; 2] =
-            std::array::from_fn(|i| (origin_px[i] + u32::from(xy[i])) as i32 * 16);
+        let corner = [origin_px[0] + u32::from(xy[0]), origin_px[1] + u32::from(xy[1])];
+        let corner = [corner[0] as i32 * 16, corner[1] as i32 * 16];
         if *uniform {
             if samples[0] != 0 {
                 let [low, high] = Layout::<S>::EXTENT;
                 let last_px = (Layout::<S>::BLOCK_PX - 1) * 16;
                 let sum = &mut sums[usize::from(samples[0]) - 1];
                 sum.count += BLOCK as u64;
-                extend(sum, corner, low, high.map(|v| v + last_px));
+                extend(sum, corner, low, [high[0] + last_px, high[1] + last_px]);
             }
             continue;
         }

@@ -12,29 +12,42 @@ pub(super) struct SampleObjects {
     pub(super) uniform: Vec<bool>,
 }
 
-impl SampleObjects {
+kernel! {
     /// Looks up the objects of a tile's ids.
-    pub(super) fn fill(&mut self, chunks: &[Chunk], ids: &[u32]) {
-        self.of_sample.resize(ids.len(), 0);
-        self.uniform.resize(ids.len() / BLOCK, false);
-        let object = |id: u32| {
-            if id == NOTHING { 0 } else { chunks[split_id(id).0].object as u16 + 1 }
-        };
-        let blocks = ids.chunks_exact(BLOCK).zip(self.of_sample.chunks_exact_mut(BLOCK));
-        for ((ids, objects), uniform) in blocks.zip(&mut self.uniform) {
-            // Without branches, so that a block is compared at once.
-            let differ = ids.iter().fold(0, |differ, id| differ | (id ^ ids[0]));
-            if same_chunk(differ, 0) {
-                objects.fill(object(ids[0]));
-                *uniform = true;
-                continue;
-            }
-            for (object_of, id) in objects.iter_mut().zip(ids) {
-                *object_of = object(*id);
-            }
-            *uniform = objects.iter().all(|o| *o == objects[0]);
+    fn objects_of_samples(chunks: &[Chunk], ids: &[u32], out: &mut SampleObjects) = objects_body
+}
+
+#[inline(always)]
+fn objects_body<const AVX2: bool>(chunks: &[Chunk], ids: &[u32], out: &mut SampleObjects) {
+    out.of_sample.resize(ids.len(), 0);
+    out.uniform.resize(ids.len() / BLOCK, false);
+    let blocks = ids.as_chunks::<BLOCK>().0.iter().zip(out.of_sample.as_chunks_mut::<BLOCK>().0);
+    for ((ids, objects), uniform) in blocks.zip(&mut out.uniform) {
+        // Without branches, so that a block is compared at once.
+        let mut differ = 0;
+        for id in ids {
+            differ |= id ^ ids[0];
         }
+        if same_chunk(differ, 0) {
+            *objects = [object_of(chunks, ids[0]); BLOCK];
+            *uniform = true;
+            continue;
+        }
+        let mut differ = 0;
+        for (object, id) in objects.iter_mut().zip(ids) {
+            *object = object_of(chunks, *id);
+        }
+        for object in &*objects {
+            differ |= object ^ objects[0];
+        }
+        *uniform = differ == 0;
     }
+}
+
+/// Object of an id plus one; 0 for nothing.
+#[inline(always)]
+fn object_of(chunks: &[Chunk], id: u32) -> u16 {
+    if id == NOTHING { 0 } else { chunks[split_id(id).0].object as u16 + 1 }
 }
 
 /// Object and distance of each pixel slot of a tile.
@@ -80,7 +93,7 @@ fn resolve_body<const AVX2: bool, const S: usize>(
         if uniform[block] {
             for ((object, distance), (objects, depth)) in places.zip(samples) {
                 *object = [objects[0]];
-                *distance = [depth.iter().fold(0.0, |a: f32, z| if *z > a { *z } else { a })];
+                *distance = [nearest(depth)];
             }
         } else {
             for ((object, distance), (objects, depth)) in places.zip(samples) {
@@ -95,6 +108,16 @@ fn resolve_body<const AVX2: bool, const S: usize>(
         let distance = F32x8::splat(near_m) / seen.select(depth, F32x8::ONE);
         seen.select(distance, F32x8::ZERO).store(eight);
     }
+}
+
+/// The largest of some depths.
+#[inline(always)]
+fn nearest(depth: &[f32]) -> f32 {
+    let mut nearest = 0.0;
+    for z in depth {
+        nearest = if *z > nearest { *z } else { nearest };
+    }
+    nearest
 }
 
 /// The object with most samples and its largest depth; of equals the nearest, nothing last.

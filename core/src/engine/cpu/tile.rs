@@ -7,10 +7,10 @@ use std::time::{Duration, Instant};
 
 use super::bin::ChunksByTile;
 use super::chunk::{Chunk, NOTHING};
-use super::fragment::{Fragments, Visible};
+use super::fragment::{Fragments, Visible, gather};
 use super::raster::raster_tile;
 use super::reduce;
-use super::resolve::{Resolved, SampleObjects, resolve};
+use super::resolve::{Resolved, SampleObjects, objects_of_samples, resolve};
 use super::samples::{BLOCK, Layout, TILE};
 use super::shade::{DrawnSurface, Stage, Surface, TileColor, shade};
 use super::simd::{F32x8, LANES, Level, kernel};
@@ -167,7 +167,9 @@ impl TilePass<'_> {
             });
         }
         if self.resolves || self.reduces {
-            scratch.measure(Step::Resolve, |s| s.objects.fill(self.chunks, &s.ids));
+            scratch.measure(Step::Resolve, |s| {
+                objects_of_samples(self.level, self.chunks, &s.ids, &mut s.objects);
+            });
         }
         if self.resolves {
             scratch.measure(Step::Resolve, |s| {
@@ -186,8 +188,9 @@ impl TilePass<'_> {
             });
         }
         if self.reduces {
-            scratch
-                .measure(Step::Reduce, |s| reduce::reduce::<S>(&s.objects, origin_px, &mut s.sums));
+            scratch.measure(Step::Reduce, |s| {
+                reduce::reduce::<S>(self.level, &s.objects, origin_px, &mut s.sums)
+            });
         }
     }
 
@@ -206,7 +209,7 @@ impl TilePass<'_> {
                 origin_px,
                 focal_px: view.fx.max(view.fy),
             };
-            s.fragments.gather::<S>(self.list.draws.len(), &visible);
+            gather::<S>(self.level, &mut s.fragments, self.list.draws.len(), &visible);
             develop::start_with_background::<S>(
                 self.level,
                 &shading.stage.develop,
