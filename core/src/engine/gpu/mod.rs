@@ -28,11 +28,13 @@ mod present;
 mod probe;
 mod readback;
 mod record;
+mod reload;
 mod stage;
 
 pub use adapter::{AdapterReport, GpuError, GpuOptions, adapters, choice};
 pub use present::{GpuContext, GpuPicture, GpuPictures};
 pub use probe::PlacedVertex;
+pub use reload::{ShaderFolder, ShaderProblem};
 
 use std::sync::Arc;
 use std::time::Instant;
@@ -194,6 +196,9 @@ impl State {
         let mut frame = Frame { width, height, ..Frame::default() };
         if !plan.runs(Pass::Visibility) {
             return Ok(frame);
+        }
+        if self.device.reload() {
+            self.buffers.forget_groups();
         }
         let pixels = width as usize * height as usize;
         let (resolves, reduces) = (plan.runs(Pass::Resolve), plan.runs(Pass::Reduce));
