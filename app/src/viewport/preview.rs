@@ -232,3 +232,35 @@ fn guarded<T>(f: impl FnOnce() -> T) -> Result<T, String> {
         format!("the program is at fault: {}", text.unwrap_or("it panicked"))
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use figurant_core::plan::Output;
+
+    #[test]
+    fn what_other_shaders_made_is_shown_again() {
+        let dir = tempfile::tempdir().unwrap();
+        let from = concat!(env!("CARGO_MANIFEST_DIR"), "/../shaders/scan.wgsl");
+        let (text, file) = (std::fs::read_to_string(from).unwrap(), dir.path().join("scan.wgsl"));
+        std::fs::write(&file, &text).unwrap();
+        let mut watch = Watch::new(ShaderFolder::new(dir.path().to_owned(), |_| {}));
+        assert!(watch.stale().is_none(), "nothing is shown yet");
+        let config = Worker::open(None).unwrap();
+        let outputs = [Output::Rgb].into();
+        let (size, renderer) = ([16, 16], Renderer::Graphics);
+        let shown = Request { config, frame: 0, seed: 0, size, viewpoint: None, outputs, renderer };
+        watch.note(&shown);
+        assert!(watch.stale().is_none());
+        std::fs::write(&file, format!("{text}fn wrong( {{")).unwrap();
+        assert!(watch.stale().is_none(), "a broken file changes nothing");
+        std::fs::write(&file, format!("{text}// Another.\n")).unwrap();
+        assert!(watch.stale().is_some_and(|request| request == shown));
+        watch.note(&shown);
+        assert!(watch.stale().is_none());
+        // The native engine has no shaders.
+        watch.note(&Request { renderer: Renderer::Native, ..shown });
+        std::fs::write(&file, &text).unwrap();
+        assert!(watch.stale().is_none());
+    }
+}

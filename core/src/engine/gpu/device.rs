@@ -93,6 +93,12 @@ impl Device {
         }
     }
 
+    /// What went wrong, which is this where nothing worse was heard of.
+    pub fn failed(&self, reason: String) -> EngineError {
+        let adapter = self.name.clone();
+        self.fault().err().unwrap_or(EngineError::Driver { adapter, reason })
+    }
+
     /// Largest buffer that shaders can be given, bytes.
     pub fn largest_buffer(&self) -> u64 {
         self.limits.max_storage_buffer_binding_size.min(self.limits.max_buffer_size)
