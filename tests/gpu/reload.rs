@@ -61,7 +61,7 @@ fn shaders_of_a_folder_are_taken_while_they_are_good() {
     let Some(options) = options() else { return };
     let copy = Copy::new();
     let shaders = Some(copy.folder.clone());
-    let mut engine = GpuEngine::new(GpuOptions { shaders, ..options }).unwrap();
+    let mut engine = GpuEngine::new(GpuOptions { shaders, ..options.clone() }).unwrap();
     let list = mixed(430, 4);
     let outputs = &[Output::Rgb, Output::Instance];
     let own = by_gpu(&mut engine, &list, outputs);
@@ -85,6 +85,10 @@ fn shaders_of_a_folder_are_taken_while_they_are_good() {
     for _ in 0..2 {
         assert!(by_gpu(&mut engine, &list, outputs) == own, "a shader that is refused was taken");
     }
+    // Not even by engines that share the folder and take what is valid from the start.
+    let shaders = Some(copy.folder.clone());
+    let mut second = GpuEngine::new(GpuOptions { shaders, ..options }).unwrap();
+    assert!(by_gpu(&mut second, &list, outputs) == own, "a shader that is refused was taken");
     let problems = copy.problems();
     assert_eq!(problems.len(), 1, "{problems:?}");
     assert_eq!(problems[0].file, copy.dir.path().join(SHADE));

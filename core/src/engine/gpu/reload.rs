@@ -62,12 +62,14 @@ struct State {
     good: Arc<Sources>,
     /// How often `good` was replaced.
     generation: u64,
+    /// What devices refused of the files as they are, so that it is told once for all engines.
+    refused: Vec<ShaderProblem>,
 }
 
 type Stamp = Option<(SystemTime, u64)>;
 
 impl ShaderFolder {
-    /// A folder, and who is told of each problem in it, once.
+    /// A folder, and who is told of each problem in it, once; that must not ask the folder.
     #[must_use]
     pub fn new(path: PathBuf, tell: impl Fn(&ShaderProblem) + Send + Sync + 'static) -> Self {
         Self(Arc::new(Shared { path, tell: Box::new(tell), state: Mutex::default() }))
@@ -97,6 +99,7 @@ impl ShaderFolder {
         if state.stamps.as_ref() != Some(&stamps) {
             // Before they are read: a file that is written meanwhile is read again.
             state.stamps = Some(stamps);
+            state.refused.clear();
             match self.read(&state.good) {
                 Ok(sources) => {
                     state.good = Arc::new(sources);
@@ -170,7 +173,12 @@ impl ShaderFolder {
         let file = self.path().join(stage.name_of_file());
         // Drivers write over several lines.
         let message = message.split_whitespace().collect::<Vec<_>>().join(" ");
-        (self.0.tell)(&ShaderProblem { file, line: None, message });
+        let problem = ShaderProblem { file, line: None, message };
+        let mut state = self.0.state.lock().unwrap_or_else(PoisonError::into_inner);
+        if !state.refused.contains(&problem) {
+            (self.0.tell)(&problem);
+            state.refused.push(problem);
+        }
     }
 }
 
