@@ -11,6 +11,7 @@ use crate::commands::processors;
 use crate::layout::Layout;
 use crate::panels;
 use crate::session::{Graphics, Session};
+use crate::studio::shader_folder;
 use crate::theme;
 use crate::viewport::paint::Screen;
 use crate::viewport::preview::Preview;
@@ -38,7 +39,8 @@ impl Shell {
         theme::apply(ctx);
         let context = render
             .as_ref()
-            .and_then(|r| GpuContext::new(&r.adapter, r.device.clone(), r.queue.clone()).ok());
+            .and_then(|r| GpuContext::new(&r.adapter, r.device.clone(), r.queue.clone()).ok())
+            .map(|context| GpuContext { shaders: shader_folder(), ..context });
         let graphics =
             context.as_ref().map(|c| Graphics { adapter: c.name.clone(), hardware: c.hardware });
         let waker = ctx.clone();

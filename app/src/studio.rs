@@ -13,7 +13,7 @@ use figurant_core::draw::Cast;
 use figurant_core::engine::Engine;
 use figurant_core::engine::cpu::{CpuEngine, CpuOptions, SimdChoice};
 #[cfg(feature = "gpu")]
-use figurant_core::engine::gpu::{self, GpuEngine, GpuOptions};
+use figurant_core::engine::gpu::{self, GpuEngine, GpuOptions, ShaderFolder};
 use figurant_core::export::{AssetLicence, DatasetInfo, PictureFormat};
 use figurant_core::job::{FrameError, Studio, catalogue};
 use figurant_core::library::textures::TextureGroup;
@@ -33,6 +33,17 @@ pub struct Loaded {
     document: Arc<Document>,
     library: Arc<Library>,
     cast: Arc<Cast>,
+    #[cfg(feature = "gpu")]
+    shaders: Option<ShaderFolder>,
+}
+
+/// The folder that `FIGURANT_SHADERS` names, for those who work on shaders: builds for debugging
+/// render by its files and take them anew whenever they change.
+#[cfg(feature = "gpu")]
+#[must_use]
+pub fn shader_folder() -> Option<ShaderFolder> {
+    let path = std::env::var_os("FIGURANT_SHADERS").filter(|_| cfg!(debug_assertions))?;
+    Some(ShaderFolder::new(path.into(), |problem| eprintln!("{problem}")))
 }
 
 impl Loaded {
@@ -157,7 +168,7 @@ impl Road for Native {
     }
 
     fn maker(&self, job: &Job<Loaded>, threads: NonZeroUsize) -> Result<Studio, FrameError> {
-        let Loaded { document, library, cast } = &job.document;
+        let Loaded { document, library, cast, .. } = &job.document;
         let (document, library) = (Arc::clone(document), Arc::clone(library));
         Studio::new(document, library, Arc::clone(cast), engine(job)?, threads)
     }
@@ -218,8 +229,8 @@ const fn choice(simd: Simd) -> SimdChoice {
 fn engine(job: &Job<Loaded>) -> Result<Box<dyn Engine>, FrameError> {
     #[cfg(feature = "gpu")]
     if job.engine.kind == EngineKind::Gpu {
-        let adapter = job.engine.adapter.clone();
-        let options = GpuOptions { adapter, ..GpuOptions::default() };
+        let (adapter, shaders) = (job.engine.adapter.clone(), job.document.shaders.clone());
+        let options = GpuOptions { adapter, shaders, ..GpuOptions::default() };
         return Ok(Box::new(GpuEngine::new(options)?));
     }
     Ok(Box::new(CpuEngine::new(CpuOptions { simd: choice(job.simd), ..CpuOptions::default() })))
@@ -269,8 +280,13 @@ fn prepare(
     invalid(document::validate(&document))?;
     let library = Library::new(folders, document.quality.max_texture_size)
         .map_err(|e| LoadError::Unreadable(e.to_string()))?;
-    let studio =
-        Loaded { document: Arc::new(document), library: Arc::new(library), cast: Arc::default() };
+    let studio = Loaded {
+        document: Arc::new(document),
+        library: Arc::new(library),
+        cast: Arc::default(),
+        #[cfg(feature = "gpu")]
+        shaders: shader_folder(),
+    };
     invalid(Studio::check_assets(&studio.document, &studio.library))?;
     let engine = settle(&wishes.engine)?;
     Ok(Job {

@@ -9,5 +9,6 @@ mod common;
 mod export;
 mod limits;
 mod parity;
+mod reload;
 mod scenes;
 mod vertices;

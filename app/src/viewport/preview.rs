@@ -8,10 +8,11 @@ use std::path::PathBuf;
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::sync::{Arc, Condvar, Mutex, PoisonError};
 use std::thread::JoinHandle;
+use std::time::Duration;
 
-use figurant_core::engine::gpu::GpuContext;
+use figurant_core::engine::gpu::{GpuContext, ShaderFolder};
 
-use super::worker::{Request, Shown, Worker};
+use super::worker::{Renderer, Request, Shown, Worker};
 use crate::road::LoadError;
 use crate::studio::Loaded;
 
@@ -65,9 +66,10 @@ impl Preview {
         let shared = Arc::<Shared>::default();
         let (sender, answers) = channel();
         let seen = Arc::clone(&shared);
-        let thread = std::thread::Builder::new()
-            .name("preview".to_owned())
-            .spawn(move || serve(&seen, Worker::new(context, threads), &sender, &wake))?;
+        let shaders = context.as_ref().and_then(|c| c.shaders.clone()).map(Watch::new);
+        let thread = std::thread::Builder::new().name("preview".to_owned()).spawn(move || {
+            serve(&seen, Worker::new(context, threads), shaders, &sender, &wake);
+        })?;
         Ok(Self { shared, answers, thread: Some(thread), asked: None, busy: false })
     }
 
@@ -131,7 +133,35 @@ enum Next {
     Show(Request),
 }
 
-fn next(shared: &Shared) -> Option<Next> {
+/// How often the folder of shaders is looked at while there is nothing to do.
+const LOOK: Duration = Duration::from_millis(250);
+
+/// Notices that the picture which is shown was made by other shaders than there are now.
+struct Watch {
+    folder: ShaderFolder,
+    generation: u64,
+    shown: Option<Request>,
+}
+
+impl Watch {
+    fn new(folder: ShaderFolder) -> Self {
+        Self { folder, generation: 0, shown: None }
+    }
+
+    /// Remembers what is about to be shown.
+    fn note(&mut self, request: &Request) {
+        self.generation = self.folder.generation();
+        self.shown = Some(request.clone()).filter(|r| r.renderer == Renderer::Graphics);
+    }
+
+    /// What is to be shown again.
+    fn stale(&self) -> Option<Request> {
+        let shown = self.shown.as_ref()?;
+        (self.folder.generation() != self.generation).then(|| shown.clone())
+    }
+}
+
+fn next(shared: &Shared, shaders: Option<&Watch>) -> Option<Next> {
     let mut inbox = shared.inbox.lock().unwrap_or_else(PoisonError::into_inner);
     loop {
         if inbox.closed {
@@ -143,12 +173,29 @@ fn next(shared: &Shared) -> Option<Next> {
         if let Some(request) = inbox.show.take() {
             return Some(Next::Show(request));
         }
-        inbox = shared.filled.wait(inbox).unwrap_or_else(PoisonError::into_inner);
+        let Some(watch) = shaders else {
+            inbox = shared.filled.wait(inbox).unwrap_or_else(PoisonError::into_inner);
+            continue;
+        };
+        let waited = shared.filled.wait_timeout(inbox, LOOK);
+        let (filled, timeout) = waited.unwrap_or_else(PoisonError::into_inner);
+        inbox = filled;
+        if timeout.timed_out()
+            && let Some(request) = watch.stale()
+        {
+            return Some(Next::Show(request));
+        }
     }
 }
 
-fn serve(shared: &Shared, mut worker: Worker, answers: &Sender<Answer>, wake: &Wake) {
-    while let Some(next) = next(shared) {
+fn serve(
+    shared: &Shared,
+    mut worker: Worker,
+    mut shaders: Option<Watch>,
+    answers: &Sender<Answer>,
+    wake: &Wake,
+) {
+    while let Some(next) = next(shared, shaders.as_ref()) {
         let answer = match next {
             Next::Open(path) => Answer::Opened(
                 guarded(|| Worker::open(path.as_deref()))
@@ -156,6 +203,9 @@ fn serve(shared: &Shared, mut worker: Worker, answers: &Sender<Answer>, wake: &W
             ),
             Next::Show(request) => {
                 let renderer = request.renderer;
+                if let Some(watch) = &mut shaders {
+                    watch.note(&request);
+                }
                 match guarded(|| worker.show(request)) {
                     Ok(Ok(shown)) => Answer::Shown(Box::new(shown)),
                     Ok(Err(e)) => Answer::Failed(e.to_string()),
@@ -181,4 +231,36 @@ fn guarded<T>(f: impl FnOnce() -> T) -> Result<T, String> {
         let text = text.or_else(|| panic.downcast_ref::<String>().map(String::as_str));
         format!("the program is at fault: {}", text.unwrap_or("it panicked"))
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use figurant_core::plan::Output;
+
+    #[test]
+    fn what_other_shaders_made_is_shown_again() {
+        let dir = tempfile::tempdir().unwrap();
+        let from = concat!(env!("CARGO_MANIFEST_DIR"), "/../shaders/scan.wgsl");
+        let (text, file) = (std::fs::read_to_string(from).unwrap(), dir.path().join("scan.wgsl"));
+        std::fs::write(&file, &text).unwrap();
+        let mut watch = Watch::new(ShaderFolder::new(dir.path().to_owned(), |_| {}));
+        assert!(watch.stale().is_none(), "nothing is shown yet");
+        let config = Worker::open(None).unwrap();
+        let outputs = [Output::Rgb].into();
+        let (size, renderer) = ([16, 16], Renderer::Graphics);
+        let shown = Request { config, frame: 0, seed: 0, size, viewpoint: None, outputs, renderer };
+        watch.note(&shown);
+        assert!(watch.stale().is_none());
+        std::fs::write(&file, format!("{text}fn wrong( {{")).unwrap();
+        assert!(watch.stale().is_none(), "a broken file changes nothing");
+        std::fs::write(&file, format!("{text}// Another.\n")).unwrap();
+        assert!(watch.stale().is_some_and(|request| request == shown));
+        watch.note(&shown);
+        assert!(watch.stale().is_none());
+        // The native engine has no shaders.
+        watch.note(&Request { renderer: Renderer::Native, ..shown });
+        std::fs::write(&file, &text).unwrap();
+        assert!(watch.stale().is_none());
+    }
 }

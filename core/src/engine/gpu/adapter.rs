@@ -5,6 +5,8 @@ use std::future::Future;
 use std::pin::pin;
 use std::task::{Context, Poll, Waker};
 
+use super::reload::ShaderFolder;
+
 /// Why no adapter renders.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum GpuError {
@@ -79,6 +81,8 @@ pub struct GpuOptions {
     pub adapter: Option<String>,
     /// Use no more than every WebGPU device has, whatever this one has.
     pub minimum_limits: bool,
+    /// Shaders in place of the program's own, read anew whenever they change.
+    pub shaders: Option<ShaderFolder>,
 }
 
 /// All adapters that could render, the fastest hardware first, software last.

@@ -49,6 +49,11 @@ impl Buffers {
         }
     }
 
+    /// Makes bind groups anew, as pipelines were.
+    pub fn forget_groups(&mut self) {
+        self.groups.clear();
+    }
+
     /// Makes a buffer hold some records, if only one that nobody reads.
     pub fn write<T: bytemuck::Pod>(
         &mut self,

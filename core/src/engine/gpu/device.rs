@@ -5,6 +5,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use super::adapter::{self, GpuError, GpuOptions};
 use super::present::GpuContext;
+use super::reload::{ShaderFolder, Sources};
 use super::stage::{Access, Stage};
 use crate::engine::EngineError;
 
@@ -25,6 +26,12 @@ pub struct Device {
     /// Whether stages can be timed.
     pub timed: bool,
     faults: Arc<Mutex<Faults>>,
+    /// Where shaders are read anew from.
+    folder: Option<ShaderFolder>,
+    /// What the pipelines are made of.
+    sources: Arc<Sources>,
+    /// What was last looked at; other than `sources` where the device refused it.
+    seen: Arc<Sources>,
     pipelines: BTreeMap<(Stage, u32), wgpu::ComputePipeline>,
 }
 
@@ -40,21 +47,29 @@ impl Device {
         }
         let (device, queue) = adapter::block_on(adapter.request_device(&wanted))
             .map_err(|e| GpuError::Refused { adapter: name.clone(), reason: e.to_string() })?;
-        Ok(Self::watched(name, device, queue))
+        Ok(Self::watched(name, device, queue, options.shaders.clone()))
     }
 
     /// A device that somebody else opened.
     pub fn given(context: GpuContext) -> Self {
-        Self::watched(context.name, context.device, context.queue)
+        Self::watched(context.name, context.device, context.queue, context.shaders)
     }
 
     /// An open device, whose faults are written down from now on.
-    fn watched(name: String, device: wgpu::Device, queue: wgpu::Queue) -> Self {
+    fn watched(
+        name: String,
+        device: wgpu::Device,
+        queue: wgpu::Queue,
+        folder: Option<ShaderFolder>,
+    ) -> Self {
         let faults = Arc::new(Mutex::new(Faults::default()));
         watch(&device, &faults);
         let limits = device.limits();
         let timed = device.features().contains(wgpu::Features::TIMESTAMP_QUERY);
-        Self { name, device, queue, limits, timed, faults, pipelines: BTreeMap::new() }
+        let sources = folder.as_ref().map(ShaderFolder::sources).unwrap_or_default();
+        let seen = Arc::clone(&sources);
+        let pipelines = BTreeMap::new();
+        Self { name, device, queue, limits, timed, faults, folder, sources, seen, pipelines }
     }
 
     /// Whether the device went away.
@@ -78,6 +93,12 @@ impl Device {
         }
     }
 
+    /// What went wrong, which is this where nothing worse was heard of.
+    pub fn failed(&self, reason: String) -> EngineError {
+        let adapter = self.name.clone();
+        self.fault().err().unwrap_or(EngineError::Driver { adapter, reason })
+    }
+
     /// Largest buffer that shaders can be given, bytes.
     pub fn largest_buffer(&self) -> u64 {
         self.limits.max_storage_buffer_binding_size.min(self.limits.max_buffer_size)
@@ -86,8 +107,43 @@ impl Device {
     /// The pipeline of a stage for so many samples a pixel; compiled when first asked for.
     pub fn pipeline(&mut self, stage: Stage, samples: u32) -> &wgpu::ComputePipeline {
         let samples = if stage.by_samples() { samples } else { 1 };
-        let device = &self.device;
-        self.pipelines.entry((stage, samples)).or_insert_with(|| compile(device, stage, samples))
+        let (device, sources, folder) = (&self.device, &self.sources, &self.folder);
+        self.pipelines.entry((stage, samples)).or_insert_with(|| {
+            let Some(folder) = folder.as_ref().filter(|_| !sources.are_own()) else {
+                return compile(device, stage, samples, sources);
+            };
+            try_compile(device, stage, samples, sources).unwrap_or_else(|reason| {
+                folder.refused(stage, &reason);
+                compile(device, stage, samples, &Sources::default())
+            })
+        })
+    }
+
+    /// Makes pipelines anew if the folder of shaders has changed since the last call; whether it
+    /// had. Pipelines are replaced all at once, or not at all if one cannot be made.
+    pub fn reload(&mut self) -> bool {
+        let Some(folder) = &self.folder else { return false };
+        let sources = folder.sources();
+        if Arc::ptr_eq(&sources, &self.seen) {
+            return false;
+        }
+        self.seen = Arc::clone(&sources);
+        let mut remade = BTreeMap::new();
+        for &(stage, samples) in self.pipelines.keys() {
+            if stage.source(samples, &sources) == stage.source(samples, &self.sources) {
+                continue;
+            }
+            match try_compile(&self.device, stage, samples, &sources) {
+                Ok(pipeline) => remade.insert((stage, samples), pipeline),
+                Err(reason) => {
+                    folder.refused(stage, &reason);
+                    return false;
+                }
+            };
+        }
+        self.sources = sources;
+        self.pipelines.extend(remade);
+        true
     }
 }
 
@@ -110,9 +166,31 @@ fn watch(device: &wgpu::Device, faults: &Arc<Mutex<Faults>>) {
     });
 }
 
-fn compile(device: &wgpu::Device, stage: Stage, samples: u32) -> wgpu::ComputePipeline {
+/// A pipeline, or why the device refuses it. The fault is kept from where others are written down.
+fn try_compile(
+    device: &wgpu::Device,
+    stage: Stage,
+    samples: u32,
+    sources: &Sources,
+) -> Result<wgpu::ComputePipeline, String> {
+    let invalid = device.push_error_scope(wgpu::ErrorFilter::Validation);
+    let internal = device.push_error_scope(wgpu::ErrorFilter::Internal);
+    let pipeline = compile(device, stage, samples, sources);
+    let errors = [adapter::block_on(internal.pop()), adapter::block_on(invalid.pop())];
+    match errors.into_iter().flatten().next() {
+        Some(error) => Err(error.to_string()),
+        None => Ok(pipeline),
+    }
+}
+
+fn compile(
+    device: &wgpu::Device,
+    stage: Stage,
+    samples: u32,
+    sources: &Sources,
+) -> wgpu::ComputePipeline {
     let label = format!("{stage:?} {samples}");
-    let module = module(device, stage, samples, &label);
+    let module = module(device, stage, samples, sources, &label);
     let entries: Vec<_> = (0..)
         .zip(stage.bindings())
         .map(|(binding, (_, access))| wgpu::BindGroupLayoutEntry {
@@ -149,18 +227,27 @@ fn compile(device: &wgpu::Device, stage: Stage, samples: u32) -> wgpu::ComputePi
     })
 }
 
-fn module(device: &wgpu::Device, stage: Stage, samples: u32, label: &str) -> wgpu::ShaderModule {
+fn module(
+    device: &wgpu::Device,
+    stage: Stage,
+    samples: u32,
+    sources: &Sources,
+    label: &str,
+) -> wgpu::ShaderModule {
     let descriptor = wgpu::ShaderModuleDescriptor {
         label: Some(label),
-        source: wgpu::ShaderSource::Wgsl(stage.source(samples).into()),
+        source: wgpu::ShaderSource::Wgsl(stage.source(samples, sources).into()),
     };
+    if !sources.are_own() {
+        return device.create_shader_module(descriptor);
+    }
     let checks = wgpu::ShaderRuntimeChecks {
         force_loop_bounding: false,
         ..wgpu::ShaderRuntimeChecks::checked()
     };
     #[expect(unsafe_code, reason = "loops that count their own end cannot be unrolled")]
     // SAFETY: every loop of our shaders counts up to a number that was read before it starts;
-    // all other checks stay on.
+    // all other checks stay on. Shaders of others are checked in full.
     unsafe {
         device.create_shader_module_trusted(descriptor, checks)
     }

@@ -15,6 +15,15 @@
 //! rendered in bands. Meshes and textures stay on the device ([`pool`]); all other buffers are kept
 //! from frame to frame. Only what the plan asks for is read back.
 //!
+//! An engine is done with a frame before it begins the next: it packs, uploads what is new, records
+//! and submits on the thread that calls it, waits for that submission and copies what was read
+//! back. Frames overlap because batches give each worker an engine of its own, with a device of its
+//! own: as many frames are in flight as there are workers, and while one waits the others draw,
+//! pack and copy. So one buffer to read back into is enough for each, and no lock is shared; what
+//! it costs is that each worker holds and uploads its own meshes and textures. Once
+//! buffers are large enough, a frame makes none; only wgpu itself stages what is written to them.
+//! `tests/benches/gpu_submit.rs` measures all of this.
+//!
 //! Lists of triangles are made in any order, but no result depends on it: the nearest sample wins,
 //! of equals the earlier drawn.
 
@@ -28,11 +37,13 @@ mod present;
 mod probe;
 mod readback;
 mod record;
+mod reload;
 mod stage;
 
 pub use adapter::{AdapterReport, GpuError, GpuOptions, adapters, choice};
 pub use present::{GpuContext, GpuPicture, GpuPictures};
 pub use probe::PlacedVertex;
+pub use reload::{ShaderFolder, ShaderProblem};
 
 use std::sync::Arc;
 use std::time::Instant;
@@ -125,6 +136,10 @@ impl Engine for GpuEngine {
             result => result,
         }
     }
+
+    fn recycle(&mut self, frame: Frame) {
+        self.state.spare = frame;
+    }
 }
 
 /// An open device with everything that lives on it.
@@ -138,6 +153,15 @@ struct State {
     present: Option<Presenter>,
     clock: Option<Clock>,
     room: Room,
+    /// A frame that nobody reads any more.
+    spare: Frame,
+}
+
+/// So many values in memory that was used before, if there is any; they may be anything.
+fn sized<T: Clone + Default>(spare: Option<Vec<T>>, count: usize) -> Vec<T> {
+    let mut values = spare.unwrap_or_default();
+    values.resize(count, T::default());
+    values
 }
 
 /// How much room triangles are given; grows when a frame needs more.
@@ -181,6 +205,7 @@ impl State {
             readback: Readback::default(),
             present: None,
             room: Room::default(),
+            spare: Frame::default(),
         }
     }
 
@@ -195,17 +220,27 @@ impl State {
         if !plan.runs(Pass::Visibility) {
             return Ok(frame);
         }
+        if self.device.reload() {
+            self.buffers.forget_groups();
+        }
         let pixels = width as usize * height as usize;
         let (resolves, reduces) = (plan.runs(Pass::Resolve), plan.runs(Pass::Reduce));
         let plan = &self.deliver(plan, [width, height])?;
         let read_back = plan.runs(Pass::Display) && plan.delivery() == Delivery::Readback;
-        frame.picture = read_back.then(|| vec![0; pixels * 3]);
-        frame.object_ids = resolves.then(|| vec![0; pixels]);
-        frame.depth_m = resolves.then(|| vec![0.0; pixels]);
-        frame.object_samples = reduces.then(|| vec![ObjectSamples::default(); list.objects.len()]);
+        let spare = std::mem::take(&mut self.spare);
+        // Every pixel is written, but only the objects that are seen.
+        frame.picture = read_back.then(|| sized(spare.picture, pixels * 3));
+        frame.object_ids = resolves.then(|| sized(spare.object_ids, pixels));
+        frame.depth_m = resolves.then(|| sized(spare.depth_m, pixels));
+        frame.object_samples = reduces.then(|| {
+            let mut sums = spare.object_samples.unwrap_or_default();
+            sums.clear();
+            sums.resize(list.objects.len(), ObjectSamples::default());
+            sums
+        });
         let sun = list.lights.sun.is_some_and(|sun| sun.shadow);
         let shadow = sun && plan.runs(Pass::Shadow) && list.shadow_map_size > 0;
-        times.measure("upload", || self.upload(list, plan, shadow))?;
+        self.upload(list, plan, shadow, times)?;
         for _ in 0..TRIES {
             if self.bands(list, plan, shadow, &mut frame, times)? {
                 if let Some(present) = &mut self.present {
@@ -233,9 +268,25 @@ impl State {
         list: &DrawList,
         plan: &PassPlan,
         shadow: bool,
+        times: &mut StageTimes,
     ) -> Result<(), EngineError> {
-        let device = &self.device;
         let wanted = Wanted::new(list, shadow);
+        let places = times.measure("upload", || self.place(list, plan, &wanted))?;
+        times.measure("pack", || {
+            self.packed.fill(list, &wanted, shadow, [&places[0], &places[1]]);
+            self.write(list, shadow)
+        })
+    }
+
+    /// Where the meshes and the textures of a draw list stand, after those that were not there yet
+    /// were brought to the device.
+    fn place(
+        &mut self,
+        list: &DrawList,
+        plan: &PassPlan,
+        wanted: &Wanted,
+    ) -> Result<[Vec<u32>; 2], EngineError> {
+        let device = &self.device;
         let needed = |i: &usize| wanted.any(*i);
         let used = (0..list.objects.len()).filter(needed).map(|i| &list.objects[i].mesh);
         self.meshes.begin(device, used);
@@ -250,10 +301,9 @@ impl State {
         let mut texture_places = vec![0; list.textures.len()];
         for (place, texture) in texture_places.iter_mut().zip(shaded) {
             let words = texture.texels.len() as u64;
-            *place = self.textures.place(device, texture, words, |t| t.texels.clone())?;
+            *place = self.textures.place(device, texture, words, |t, _| &t.texels)?;
         }
-        self.packed.fill(list, &wanted, shadow, [&mesh_places, &texture_places]);
-        self.write(list, shadow)
+        Ok([mesh_places, texture_places])
     }
 
     /// Writes the packed records, and makes room for what depends on their number.
@@ -322,9 +372,12 @@ impl State {
             let band = Band { first_y, rows, last: first_y + rows == list.view.height };
             times.measure("submit", || self.submit(list, plan, shadow, band))?;
             let start = Instant::now();
-            let mut ticks = [0; 2 * Stage::ALL.len()];
-            let counted = self.readback.take(&self.device, band, frame, &mut ticks)?;
+            self.readback.wait(&self.device)?;
             let waited = start.elapsed();
+            let mut ticks = [0; 2 * Stage::ALL.len()];
+            let counted = times.measure("copy back", || {
+                self.readback.take(&self.device, band, frame, &mut ticks)
+            })?;
             match &self.clock {
                 Some(clock) => clock.report(&ticks, waited, times),
                 None => times.add("wait for the device", waited),

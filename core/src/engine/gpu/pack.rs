@@ -55,18 +55,26 @@ pub const fn mesh_words(mesh: &Mesh) -> u64 {
     mesh.positions.len() as u64 * VERTEX_WORDS as u64 + mesh.triangles.len() as u64 * 3
 }
 
-/// A mesh as the pool holds it.
-pub fn mesh_content(mesh: &Mesh) -> Vec<u32> {
-    let mut words = Vec::with_capacity(mesh_words(mesh) as usize);
-    for i in 0..mesh.positions.len() {
-        words.extend(mesh.positions[i].map(f32::to_bits));
-        words.push(mesh.normals[i].bits());
-        words.extend(mesh.uvs[i].map(f32::to_bits));
-        let skin = mesh.skin.get(i).copied().unwrap_or_default();
-        words.extend([skin.joints, skin.weights].map(u32::from_le_bytes));
+/// A mesh as the pool holds it, in memory of the pool's.
+pub fn mesh_content<'a>(mesh: &'a Mesh, words: &'a mut Vec<u32>) -> &'a [u32] {
+    // What was there before is written over, so that memory which is long enough is not cleared.
+    words.resize(words.len().max(mesh_words(mesh) as usize), 0);
+    let (vertices, rest) = words.split_at_mut(mesh.positions.len() * VERTEX_WORDS as usize);
+    let vertices = vertices.as_chunks_mut::<{ VERTEX_WORDS as usize }>().0;
+    let places = mesh.positions.iter().zip(&mesh.normals).zip(&mesh.uvs);
+    for (vertex, ((position, normal), uv)) in vertices.iter_mut().zip(places) {
+        let [x, y, z] = position.map(f32::to_bits);
+        let [u, v] = uv.map(f32::to_bits);
+        *vertex = [x, y, z, normal.bits(), u, v, 0, 0];
     }
-    words.extend(mesh.triangles.iter().flat_map(|t| t.get()));
-    words
+    for (vertex, skin) in vertices.iter_mut().zip(&mesh.skin) {
+        (vertex[6], vertex[7]) =
+            (u32::from_le_bytes(skin.joints), u32::from_le_bytes(skin.weights));
+    }
+    for (words, triangle) in rest.as_chunks_mut::<3>().0.iter_mut().zip(&mesh.triangles) {
+        *words = triangle.get();
+    }
+    &words[..mesh_words(mesh) as usize]
 }
 
 impl Packed {

@@ -29,6 +29,8 @@ pub struct Pool<T> {
     /// First word and length of what is taken.
     taken: BTreeMap<u64, u64>,
     frame: u64,
+    /// Memory for what is uploaded next.
+    scratch: Vec<u32>,
 }
 
 impl<T> Pool<T> {
@@ -41,6 +43,7 @@ impl<T> Pool<T> {
             items: BTreeMap::new(),
             taken: BTreeMap::new(),
             frame: 0,
+            scratch: Vec::new(),
         }
     }
 
@@ -66,13 +69,14 @@ impl<T> Pool<T> {
         }
     }
 
-    /// First word of an item; uploads what `fill` writes if it is not there.
+    /// First word of an item; uploads what `fill` hands back, which may be the memory that it is
+    /// given, if it is not there.
     pub fn place(
         &mut self,
         device: &Device,
         item: &Arc<T>,
         words: u64,
-        fill: impl FnOnce(&T) -> Vec<u32>,
+        fill: impl for<'a> FnOnce(&'a T, &'a mut Vec<u32>) -> &'a [u32],
     ) -> Result<u32, EngineError> {
         let key = address(item);
         if let Some(known) = self.items.get_mut(&key) {
@@ -80,9 +84,9 @@ impl<T> Pool<T> {
             return Ok(known.first as u32);
         }
         let first = self.room(device, words)?;
-        let content = fill(item);
+        let content = fill(item, &mut self.scratch);
         if let Some(buffer) = &self.buffer {
-            device.queue.write_buffer(buffer, first * 4, bytemuck::cast_slice(&content));
+            device.queue.write_buffer(buffer, first * 4, bytemuck::cast_slice(content));
         }
         self.taken.insert(first, words);
         let held = Arc::downgrade(item);

@@ -8,6 +8,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use super::adapter::{GpuError, is_hardware};
 use super::buffers::Buffers;
 use super::device::Device;
+use super::reload::ShaderFolder;
 use super::stage::Resource;
 use crate::engine::EngineError;
 
@@ -30,6 +31,8 @@ pub struct GpuContext {
     pub device: wgpu::Device,
     /// Its queue.
     pub queue: wgpu::Queue,
+    /// Shaders in place of the program's own, read anew whenever they change.
+    pub shaders: Option<ShaderFolder>,
 }
 
 impl GpuContext {
@@ -54,7 +57,7 @@ impl GpuContext {
             let reason = "its interface has less than WebGPU's least for compute shaders";
             return Err(GpuError::Refused { adapter: info.name, reason: reason.to_owned() });
         }
-        Ok(Self { hardware: is_hardware(&info), name: info.name, device, queue })
+        Ok(Self { hardware: is_hardware(&info), name: info.name, device, queue, shaders: None })
     }
 
     /// What to ask an adapter for, so that an engine can use all of it.

@@ -85,21 +85,9 @@ impl Readback {
         Ok(())
     }
 
-    /// Waits for a submission and fills the band's part of a frame; ticks of the clock go to
-    /// `ticks`. What was counted is handed back; the rest is nonsense where that says so.
-    pub fn take(
-        &mut self,
-        device: &Device,
-        band: Band,
-        frame: &mut Frame,
-        ticks: &mut [u64],
-    ) -> Result<Counted, EngineError> {
-        let failed = |reason: String| {
-            device
-                .fault()
-                .err()
-                .unwrap_or(EngineError::Driver { adapter: device.name.clone(), reason })
-        };
+    /// Waits until what was recorded last is done and can be read.
+    pub fn wait(&self, device: &Device) -> Result<(), EngineError> {
+        let failed = |reason: String| device.failed(reason);
         let Some(buffer) = &self.buffer else { return Err(failed("nothing to read".to_owned())) };
         let (sender, receiver) = std::sync::mpsc::channel();
         buffer.map_async(wgpu::MapMode::Read, .., move |result| {
@@ -112,10 +100,23 @@ impl Readback {
             .map_err(|e| failed(e.to_string()))?;
         device.fault()?;
         match receiver.try_recv() {
-            Ok(Ok(())) => {}
-            Ok(Err(e)) => return Err(failed(e.to_string())),
-            Err(e) => return Err(failed(e.to_string())),
+            Ok(Ok(())) => Ok(()),
+            Ok(Err(e)) => Err(failed(e.to_string())),
+            Err(e) => Err(failed(e.to_string())),
         }
+    }
+
+    /// Fills the band's part of a frame with what was waited for; ticks of the clock go to `ticks`.
+    /// What was counted is handed back; the rest is nonsense where that says so.
+    pub fn take(
+        &self,
+        device: &Device,
+        band: Band,
+        frame: &mut Frame,
+        ticks: &mut [u64],
+    ) -> Result<Counted, EngineError> {
+        let failed = |reason: String| device.failed(reason);
+        let Some(buffer) = &self.buffer else { return Err(failed("nothing to read".to_owned())) };
         let mapped = buffer.get_mapped_range(..).map_err(|e| failed(e.to_string()))?;
         let mut counted = [Counters::default(); 2];
         let mut end = 0;
@@ -170,6 +171,29 @@ fn take_sums(content: &[u8], frame: &mut Frame) {
                 min_16th: record.low.map(|v| (u32::MAX - v) as i32),
                 max_16th: record.high.map(|v| v as i32),
             };
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn pictures_keep_their_three_channels() {
+        for (width, rows, first_y) in [(1, 1, 0), (3, 1, 1), (5, 3, 2), (8, 2, 1), (7, 5, 0)] {
+            let count = width * (rows + first_y + 1) * 3;
+            let mut frame = Frame { width: width as u32, ..Frame::default() };
+            frame.picture = Some(vec![9; count]);
+            let pixel = |i: usize| [i as u8, 100 + i as u8, 200 + i as u8];
+            let content: Vec<u8> =
+                (0..width * rows).flat_map(|i| [pixel(i).as_slice(), &[77]].concat()).collect();
+            let band = Band { first_y: first_y as u32, rows: rows as u32, last: false };
+            take_picture(&content, band, &mut frame);
+            let mut wanted = vec![9; width * first_y * 3];
+            wanted.extend((0..width * rows).flat_map(pixel));
+            wanted.resize(count, 9);
+            assert_eq!(frame.picture.as_ref(), Some(&wanted), "{width} x {rows} from {first_y}");
         }
     }
 }

@@ -1,7 +1,7 @@
 //! The stages: which shader each is, what it reads and writes, and its source text.
 //!
 //! A shader is plain text: the constants of its variant, the shared files that it needs, and its
-//! own file. Texts are embedded; nothing is read at run time.
+//! own file. Texts are embedded; [`super::reload`] can put others in their place.
 
 /// A file of the folder of shaders.
 macro_rules! file {
@@ -78,6 +78,7 @@ pub enum Stage {
     Shade,
 }
 
+use super::reload::Sources;
 use crate::engine::pattern;
 use Access::{Read, Uniform, Write};
 use Resource as R;
@@ -271,17 +272,41 @@ impl Stage {
     }
 
     /// The whole text of its shader, for so many samples a pixel where that matters.
-    pub fn source(self, samples: u32) -> String {
-        let mut text = constants(if self.by_samples() { samples } else { 1 });
+    pub fn source(self, samples: u32, sources: &Sources) -> String {
+        let mut text = self.constants(samples);
         for file in self.files() {
-            text += &text_of(*file);
+            text += sources.text(*file);
             text.push('\n');
         }
         text
     }
 
+    /// The file and its line where a line of the whole text stands, both from 1; nothing where no
+    /// file holds it.
+    pub fn place(self, samples: u32, sources: &Sources, line: u32) -> Option<(&'static str, u32)> {
+        let breaks = |text: &str| text.matches('\n').count() as u32;
+        let mut line = line.checked_sub(breaks(&self.constants(samples))).filter(|l| *l > 0)?;
+        for file in self.files() {
+            let lines = breaks(sources.text(*file)) + 1;
+            if line <= lines {
+                return Some((file.0, line));
+            }
+            line -= lines;
+        }
+        None
+    }
+
+    /// The name of the file that no other stage's shader is about.
+    pub fn name_of_file(self) -> &'static str {
+        self.files().last().map_or("", |file| file.0)
+    }
+
+    fn constants(self, samples: u32) -> String {
+        constants(if self.by_samples() { samples } else { 1 })
+    }
+
     /// Its files, each after those that it needs.
-    fn files(self) -> &'static [File] {
+    pub fn files(self) -> &'static [File] {
         match self {
             Self::Skin => &[ABI, DOUBLE, PROJECT, file!("skin.wgsl")],
             Self::Project => &[ABI, DOUBLE, PROJECT, file!("project.wgsl")],
@@ -314,7 +339,7 @@ impl Stage {
 }
 
 /// Name and text of a file of the folder of shaders.
-type File = (&'static str, &'static str);
+pub type File = (&'static str, &'static str);
 
 const ABI: File = file!("shared/abi.wgsl");
 const DOUBLE: File = file!("shared/double.wgsl");
@@ -324,18 +349,6 @@ const BOUNDS: File = file!("shared/bounds.wgsl");
 const TRIANGLE: File = file!("shared/triangle.wgsl");
 const EDGE: File = file!("shared/edge.wgsl");
 const RASTER: File = file!("shared/raster.wgsl");
-
-/// The text of a file. Debug builds take it from the folder that `FIGURANT_SHADERS` names, so that
-/// shaders can be worked on without building anew.
-fn text_of((name, text): File) -> String {
-    if cfg!(debug_assertions)
-        && let Some(folder) = std::env::var_os("FIGURANT_SHADERS")
-        && let Ok(changed) = std::fs::read_to_string(std::path::Path::new(&folder).join(name))
-    {
-        return changed;
-    }
-    text.to_owned()
-}
 
 /// Pixels of a tile of 64 that one invocation of `raster` owns: as many as its registers hold the
 /// samples of.
