@@ -3,9 +3,10 @@
 use std::sync::Arc;
 
 use figurant_core::draw::DrawList;
-use figurant_core::draw::abi::{ColorGrade, Draw, DrawObject, Grade, Lights, Material, View};
+use figurant_core::draw::abi::{
+    ColorGrade, Draw, DrawObject, Grade, Lights, Material, ToneCurve, View,
+};
 use figurant_core::library::mesh::Mesh;
-use figurant_core::scene::ToneCurve;
 use glam::{DAffine3, DMat3, DQuat, DVec3};
 
 use crate::meshes::{self, Dice};

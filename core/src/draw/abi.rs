@@ -5,7 +5,9 @@ use std::sync::Arc;
 
 use crate::library::mesh::Mesh;
 use crate::library::texture::Texture;
-use crate::scene::ToneCurve;
+
+/// From the sensor's light to that of the display, as the scene names it.
+pub use crate::scene::ToneCurve;
 
 /// One frame, ready to be drawn.
 #[derive(Clone, Debug, Default)]

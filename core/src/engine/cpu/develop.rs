@@ -9,8 +9,7 @@ use super::samples::{Layout, TILE};
 use super::shade::TileColor;
 use super::simd::{F32x8, LANES, Vec3x8, kernel};
 use crate::draw::DrawList;
-use crate::draw::abi::ColorGrade;
-use crate::scene::ToneCurve;
+use crate::draw::abi::{ColorGrade, ToneCurve};
 
 /// Darkest and brightest light of AgX, binary orders of magnitude.
 const AGX_RANGE: [f32; 2] = [-12.473_93, 4.026_069];
@@ -18,7 +17,7 @@ const AGX_RANGE: [f32; 2] = [-12.473_93, 4.026_069];
 const AGX_INSET: [[f32; 3]; 3] = [
     [0.842_479_06, 0.078_433_6, 0.079_223_745],
     [0.042_328_24, 0.878_468_64, 0.079_166_13],
-    [0.042_375_654, 0.078_433_6, 0.879_142_97],
+    [0.042_375_654, 0.078_433_6, 0.879_143],
 ];
 /// See [`AGX_INSET`].
 const AGX_OUTSET: [[f32; 3]; 3] = [

@@ -5,11 +5,10 @@ use super::abi::{
     TRIANGLE_BATCH, Target, TriangleBatch, VERTEX_BATCH, VERTEX_WORDS, VertexBatch,
 };
 use crate::draw::DrawList;
-use crate::draw::abi::{Grade, Material, View};
+use crate::draw::abi::{Grade, Material, ToneCurve, View};
 use crate::engine::{noise, pattern};
 use crate::library::mesh::Mesh;
 use crate::library::texture::{Encoding, Texture};
-use crate::scene::ToneCurve;
 
 /// Which objects a frame needs, and for what.
 pub struct Wanted {

@@ -33,7 +33,7 @@ impl<const AVX2: bool> F32x8<AVX2> {
         exponent.to_f32() + (low * f + s(1.442_713_5)) * f
     }
 
-    /// 2 to the power of numbers in -126..=126, within 3e-6 of the result; harmless nonsense beyond.
+    /// 2 to the power of numbers in -126..=126, within 4e-6 of the result; harmless nonsense beyond.
     #[inline(always)]
     pub(in crate::engine::cpu) fn exp2(self) -> Self {
         let s = Self::splat;
@@ -66,12 +66,12 @@ mod tests {
     }
 
     #[test]
-    fn powers_of_two_are_right_to_three_millionths() {
+    fn powers_of_two_are_right_to_four_millionths() {
         for i in -126 * 512..=126 * 512 {
             let x = i as f32 / 512.0;
             let got = f64::from(F32x8::<false>::splat(x).exp2().0[0]);
             let wanted = libm::exp2(f64::from(x));
-            assert!((got / wanted - 1.0).abs() < 3e-6, "{x}: {got} {wanted}");
+            assert!((got / wanted - 1.0).abs() < 4e-6, "{x}: {got} {wanted}");
         }
         assert_eq!(F32x8::<false>::splat(0.0).exp2(), F32x8::ONE);
     }
