@@ -28,12 +28,30 @@ fn keep(at: u32, depth: f32, order: u32, slot: u32) {
     }
 }
 
+// By how much edge functions without their last digits are too small at most: a unit for each of
+// 127 steps to the right and down, and one for the start.
+const CUT_DIGITS: i32 = 255;
+
+// Whether a sample, raster units from the tile's origin, lies in a triangle.
+fn covers(x: vec3<i32>, y: vec3<i32>, bias: vec3<i32>, at: vec2<i32>) -> bool {
+    let a = y - y.yzx;
+    let b = x.yzx - x;
+    for (var i = 0u; i < 3u; i++) {
+        let edge = edge_start(a[i], b[i], x[i] - at.x, y[i] - at.y, bias[i], 1u);
+        if edge.grid < 0 {
+            return false;
+        }
+    }
+    return true;
+}
+
 fn raster_large(slot: u32, lane: u32, x: vec3<i32>, y: vec3<i32>) {
     let a = y - y.yzx;
     let b = x.yzx - x;
     let bias = edge_bias(a, b);
-    // Values of edges over some 4096 pixels long are too large with fine steps; they can do
-    // without the last digits, as what is lost over a tile is a millionth of a step.
+    // Values of edges over some 4096 pixels long are too large with fine steps. They go without the
+    // last digits, and samples that these decide about are looked at again: else neither of two
+    // neighbours might take a sample on the edge between them.
     let steep = max(max(abs(a.x) + abs(b.x), abs(a.y) + abs(b.y)), abs(a.z) + abs(b.z));
     let extra = select(0u, 3u, SAMPLES > 1u && steep >= (1 << 22u));
     let shift = GRID_LOG2 + extra;
@@ -45,7 +63,8 @@ fn raster_large(slot: u32, lane: u32, x: vec3<i32>, y: vec3<i32>) {
     let step_y = b >> vec3<u32>(extra);
     let across = select(vec3<i32>(0), step_x * (8 * GRID_PER_PX), step_x > vec3<i32>(0));
     let down = select(vec3<i32>(0), step_y * (8 * GRID_PER_PX), step_y > vec3<i32>(0));
-    if any(start + across + down < vec3<i32>(0)) {
+    let doubt = select(0, -CUT_DIGITS, extra > 0u);
+    if any(start + across + down < vec3<i32>(doubt)) {
         return;
     }
     let z = primitives[slot].depth;
@@ -60,7 +79,11 @@ fn raster_large(slot: u32, lane: u32, x: vec3<i32>, y: vec3<i32>) {
         for (var s = 0u; s < SAMPLES; s++) {
             let at = pixel + (POSITIONS[s] - GRID_CORNER) * GRID_PER_PX / 16;
             let inside = start + step_x * at.x + step_y * at.y;
-            if (inside.x | inside.y | inside.z) >= 0 {
+            let lowest = least(inside);
+            if lowest < doubt {
+                continue;
+            }
+            if lowest >= 0 || covers(x, y, bias, at << vec2<u32>(GRID_LOG2)) {
                 keep(k * SAMPLES + s, depth + dot(slope, vec2<f32>(at)), order, slot);
             }
         }

@@ -130,7 +130,7 @@ fn compare_labels(
                 .fold(0.0, f64::max);
             assert!(
                 samples.iter().any(|s| s.doubt) || error < 1e-5 + slope * 2e-4,
-                "{name}: distance {} instead of {} at {at:?}: {error:e}, slope {slope:e}",
+                "{name}: distance {} instead of {} at {at:?}: {error:e}, slope {slope:e}: {samples:?}",
                 db[i],
                 da[i]
             );
