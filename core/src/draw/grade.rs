@@ -7,8 +7,7 @@
 use glam::{DMat3, DVec3};
 
 use super::abi::{ColorGrade, Grade};
-use crate::base::rng::{Draws, Key};
-use crate::scene::{Post, Scene};
+use crate::scene::Post;
 
 /// XYZ of linear Rec. 709 (IEC 61966-2-1), by columns.
 const XYZ_FROM_LINEAR: DMat3 = DMat3::from_cols_array(&[
@@ -39,15 +38,13 @@ const MID_GREY: f64 = 0.18;
 const LUMA: DVec3 = DVec3::new(0.272_228_7, 0.674_081_8, 0.053_689_5);
 
 /// What is to be done with the light of a scene.
-pub fn grade(scene: &Scene) -> Grade {
-    let post = &scene.post;
-    let noise = Draws::new(scene.seed, scene.frame).of(Key::new("post.grain.noise"), 0);
+pub fn grade(post: &Post) -> Grade {
     Grade {
         vignette: post.vignette as f32,
         color: color(post),
         tone_curve: post.tone_curve,
         grain: post.grain as f32,
-        grain_key: (noise.uniform() * 4_294_967_296.0) as u32,
+        grain_key: post.grain_key,
     }
 }
 
@@ -61,10 +58,11 @@ fn color(post: &Post) -> Option<ColorGrade> {
     let before = ACESCG_FROM_LINEAR * balance;
     let after = ACESCG_FROM_LINEAR.inverse() * saturating(1.0 + saturation / 100.0);
     let rows = |m: DMat3| [0, 1, 2].map(|r| m.row(r).as_vec3().to_array());
-    Some(if contrast == 0.0 {
+    // The engines leave the curve and the second matrix out where the exponent, as they have it, is 1.
+    let exponent = (1.0 + contrast / 100.0) as f32;
+    Some(if exponent == 1.0 {
         ColorGrade { before: rows(after * before), contrast: 1.0, after: rows(DMat3::IDENTITY) }
     } else {
-        let exponent = (1.0 + contrast / 100.0) as f32;
         let (before, after) = (before * (1.0 / MID_GREY), after * MID_GREY);
         ColorGrade { before: rows(before), contrast: exponent, after: rows(after) }
     })
@@ -94,14 +92,18 @@ fn saturating(factor: f64) -> DMat3 {
 mod tests {
     use super::*;
 
+    /// What the engines make of a light.
     fn applied(post: &Post, v: DVec3) -> DVec3 {
         let Some(grade) = color(post) else { return v };
         let times = |m: &[[f32; 3]; 3], v: DVec3| {
             DVec3::from_array(m.map(|r| DVec3::from_array(r.map(f64::from)).dot(v)))
         };
+        let v = times(&grade.before, v);
+        if grade.contrast == 1.0 {
+            return v;
+        }
         let curve = |x: f64| libm::pow(x.max(0.0), f64::from(grade.contrast));
-        let v = times(&grade.before, v).to_array().map(curve);
-        times(&grade.after, DVec3::from_array(v))
+        times(&grade.after, DVec3::from_array(v.to_array().map(curve)))
     }
 
     #[test]
@@ -137,7 +139,14 @@ mod tests {
     #[test]
     fn what_does_nothing_is_left_out() {
         assert_eq!(color(&Post::default()), None);
-        let some = color(&Post { contrast: 1e-6, ..Post::default() });
-        assert!(some.is_some());
+    }
+
+    #[test]
+    fn next_to_no_contrast_is_next_to_none() {
+        let light = DVec3::new(0.7, 0.05, 0.3);
+        for contrast in [1e-9, -1e-6, 5e-6, 1e-5, -1e-3] {
+            let got = applied(&Post { contrast, ..Post::default() }, light);
+            assert!((got - light).abs().max_element() < 1e-4, "{contrast}: {got}");
+        }
     }
 }

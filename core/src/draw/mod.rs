@@ -140,7 +140,7 @@ impl<'a> Drawing<'a> {
         let list = DrawList {
             view: view(&scene.camera, &view_from_world),
             exposure: exposure_from_ev100(scene.exposure_ev100) as f32,
-            grade: grade::grade(scene),
+            grade: grade::grade(&scene.post),
             shadow_map_size: options.shadow_map_size,
             samples: options.samples,
             ..DrawList::default()

@@ -2,8 +2,8 @@
 //!
 //! An engine knows nothing of documents, labels or files. [`cpu`] is native Rust: tiles over
 //! threads, eight-wide portable SIMD, the same bytes on every machine. `gpu` (feature `gpu`) runs
-//! the same stages as compute shaders by way of wgpu; what they share is `input`, which says what
-//! a draw list must fulfil.
+//! the same stages as compute shaders by way of wgpu. What they share is `input`, which says what
+//! a draw list must fulfil, `pattern`, where samples lie, and `noise`, the grain of a pixel.
 
 use crate::draw::DrawList;
 use crate::plan::{Frame, PassPlan, StageTimes};
@@ -94,4 +94,12 @@ pub trait Engine: Send {
     fn recycle(&mut self, frame: Frame) {
         drop(frame);
     }
+}
+
+/// A buffer of a length, in the memory of an earlier one where there was one. What it holds is left
+/// as it is: engines write every pixel.
+fn resized<T: Clone + Default>(earlier: Option<Vec<T>>, len: usize) -> Vec<T> {
+    let mut buffer = earlier.unwrap_or_default();
+    buffer.resize(len, T::default());
+    buffer
 }

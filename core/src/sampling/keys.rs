@@ -136,6 +136,7 @@ keys! {
     CONTRAST = "post.contrast",
     SATURATION = "post.saturation",
     GRAIN = "post.grain",
+    GRAIN_NOISE = "post.grain.noise",
 }
 
 #[cfg(test)]

@@ -25,5 +25,6 @@ pub(super) fn post(post: &document::Post, draws: Draws) -> Post {
         saturation: of(&post.saturation, keys::SATURATION),
         tone_curve: post.tone_curve,
         grain: of(&post.grain, keys::GRAIN),
+        grain_key: (draws.of(keys::GRAIN_NOISE, 0).uniform() * 4_294_967_296.0) as u32,
     }
 }

@@ -19,6 +19,8 @@ pub struct Post {
     pub tone_curve: ToneCurve,
     /// Standard deviation of monochrome noise, a share of the picture's full scale (sRGB).
     pub grain: f64,
+    /// Key of that noise.
+    pub grain_key: u32,
 }
 
 /// From the sensor's light to that of the display.

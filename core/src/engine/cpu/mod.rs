@@ -48,7 +48,7 @@ use self::shadow::map::{ShadowMap, SunShadow};
 use self::shadow::{Bounds, ShadowView, SunAxes};
 use self::simd::Level;
 use self::tile::{Row, Scratch, Shading, TilePass};
-use super::{Engine, EngineError, input};
+use super::{Engine, EngineError, input, resized};
 use crate::draw::DrawList;
 use crate::plan::{Frame, ObjectSamples, Pass, PassPlan, StageTimes};
 
@@ -314,14 +314,6 @@ impl Buffers {
         });
         self.scratches.lock().unwrap_or_else(PoisonError::into_inner).extend(used);
     }
-}
-
-/// A buffer of a length, in the memory of an earlier one where there was one. What it holds is left
-/// as it is: the tiles write every pixel.
-fn resized<T: Clone + Default>(earlier: Option<Vec<T>>, len: usize) -> Vec<T> {
-    let mut buffer = earlier.unwrap_or_default();
-    buffer.resize(len, T::default());
-    buffer
 }
 
 /// Projects the vertices of the wanted objects; the others' places keep what they held.

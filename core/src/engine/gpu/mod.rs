@@ -57,7 +57,7 @@ use self::present::Presenter;
 use self::readback::{Band, Counted, Readback};
 use self::record::{Clock, Recorder};
 use self::stage::{Resource, Stage};
-use super::{Engine, EngineError, input};
+use super::{Engine, EngineError, input, resized};
 use crate::draw::DrawList;
 use crate::library::mesh::Mesh;
 use crate::library::texture::Texture;
@@ -157,13 +157,6 @@ struct State {
     spare: Frame,
 }
 
-/// So many values in memory that was used before, if there is any; they may be anything.
-fn sized<T: Clone + Default>(spare: Option<Vec<T>>, count: usize) -> Vec<T> {
-    let mut values = spare.unwrap_or_default();
-    values.resize(count, T::default());
-    values
-}
-
 /// How much room triangles are given; grows when a frame needs more.
 #[derive(Clone, Copy, Debug, Default)]
 struct Room {
@@ -229,9 +222,9 @@ impl State {
         let read_back = plan.runs(Pass::Display) && plan.delivery() == Delivery::Readback;
         let spare = std::mem::take(&mut self.spare);
         // Every pixel is written, but only the objects that are seen.
-        frame.picture = read_back.then(|| sized(spare.picture, pixels * 3));
-        frame.object_ids = resolves.then(|| sized(spare.object_ids, pixels));
-        frame.depth_m = resolves.then(|| sized(spare.depth_m, pixels));
+        frame.picture = read_back.then(|| resized(spare.picture, pixels * 3));
+        frame.object_ids = resolves.then(|| resized(spare.object_ids, pixels));
+        frame.depth_m = resolves.then(|| resized(spare.depth_m, pixels));
         frame.object_samples = reduces.then(|| {
             let mut sums = spare.object_samples.unwrap_or_default();
             sums.clear();
