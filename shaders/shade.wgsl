@@ -88,7 +88,7 @@ fn pixel_color(first: u32, corner: vec2<f32>) -> vec3<f32> {
         color += fragment(own.x, at) * (f32(count) / f32(SAMPLES));
     }
     if nothing > 0u {
-        color += developed(frame.background, corner + 0.5) * (f32(nothing) / f32(SAMPLES));
+        color += developed(backdrop(corner + 0.5), corner + 0.5) * (f32(nothing) / f32(SAMPLES));
     }
     return color;
 }

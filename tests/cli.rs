@@ -100,6 +100,7 @@ impl FrameMaker for Painter {
                         sky_lux: [1.0; 3],
                         ground_lux: [1.0; 3],
                         background_nits: [0.0; 3],
+                        image: None,
                     },
                 },
                 exposure_ev100: 3.0,

@@ -41,6 +41,7 @@ fn catalogue() -> Catalogue {
             .ids(TextureGroup::Procedural)
             .to_vec(),
         cloth_patterns: names("pattern", 5),
+        environments: names("hdri", 3),
     }
 }
 

@@ -48,6 +48,17 @@ struct Frame {
     grain: f32,
     // 0 ACES, 1 AgX, 2 none.
     tone_curve: u32,
+    // A picture of the surroundings: whether there is one, exposed light of its 1.
+    has_environment: u32,
+    environment_unit: f32,
+    pad5: u32,
+    pad6: u32,
+    // Rows of the rotation into its axes.
+    environment_from_view: array<vec4<f32>, 3>,
+    // First word among the texels and log2 of the width of each level, two levels in one.
+    environment_levels: array<vec4<u32>, 3>,
+    // Exposed factors of 1, x, y, z, xx, yy, zz, xy, yz, zx of the normal, by channel.
+    environment_irradiance: array<vec4<f32>, 10>,
 }
 
 // A picture that is rastered: a band of the camera's, or the sun's map.

@@ -3,7 +3,6 @@
 // Karis' fit of the split sum ("Physically based shading on mobile", 2014). The formulas stand in
 // core/src/engine/cpu/shade/light.rs.
 
-const PI: f32 = 3.14159265358979;
 // How much further off the surface wrapped light looks up shadows, metres per unit of wrap.
 const WRAP_OFFSET_M: f32 = 0.04;
 // f0 of what is not metal.
@@ -88,13 +87,26 @@ fn split_sum(roughness: f32, n_dot_v: f32) -> vec2<f32> {
     return vec2<f32>(1.04 - roughness * 0.572 - 1.04 * a, 1.04 * a + (roughness * 0.022 - 0.04));
 }
 
-// Sky and ground.
+// Light from all around; core/src/engine/cpu/shade/light.rs has the formulas.
 fn surrounding(r: Reflector, roughness: f32) -> vec3<f32> {
-    let upwards = dot(r.normal, frame.up);
-    let mirrored_upwards = (r.n_dot_v + r.n_dot_v) * upwards - dot(r.to_viewer, frame.up);
+    let both_ways = r.n_dot_v + r.n_dot_v;
+    var irradiance: vec3<f32>;
+    var mirrored: vec3<f32>;
+    if frame.has_environment != 0u {
+        irradiance = environment_irradiance(r.normal);
+        mirrored = environment_mirrored(r.normal * both_ways - r.to_viewer, roughness);
+    } else {
+        let upwards = dot(r.normal, frame.up);
+        irradiance = hemisphere(upwards);
+        mirrored = hemisphere(both_ways * upwards - dot(r.to_viewer, frame.up)) * (1.0 / PI);
+    }
     let s = split_sum(roughness, r.n_dot_v);
-    let mirror = (r.f0 * s.x + s.y) * (1.0 / PI);
-    return hemisphere(upwards) * r.diffuse + hemisphere(mirrored_upwards) * mirror;
+    let single = r.f0 * s.x + s.y;
+    let lost = max(1.0 - (s.x + s.y), 0.0);
+    let mean = r.f0 + (1.0 - r.f0) * (1.0 / 21.0);
+    let again = single * mean * lost / (1.0 - mean * lost);
+    let matt = r.diffuse * (1.0 - single - again) + again * (1.0 / PI);
+    return mirrored * single + irradiance * matt;
 }
 
 // Light of a lamp; nothing beyond its range or behind the surface.

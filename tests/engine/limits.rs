@@ -37,7 +37,11 @@ fn lit(seed: u64, samples: u32) -> DrawList {
             color_from_srgb8([120, 136, 144]),
         );
     }
-    list.textures.push(Arc::new(Texture { log2_size: 6, encoding: Encoding::Color, texels }));
+    list.textures.push(Arc::new(Texture {
+        log2_size: 6,
+        encoding: Encoding::Color,
+        texels: texels.into(),
+    }));
     for (i, m) in list.materials.iter_mut().enumerate() {
         m.albedo_map = (i % 2 == 0).then_some(0);
         m.normal_map = (i % 3 == 0).then_some(0);

@@ -1,13 +1,16 @@
 //! Light, textures and shadows against the oracle and closed forms.
 
 use figurant_core::draw::DrawList;
-use figurant_core::draw::abi::{Material, PointLight, Sun};
+use figurant_core::draw::abi::{Material, PointLight, Sun, Surroundings};
+use figurant_core::library::environment::EnvironmentMap;
+use figurant_core::library::environment::equirect::Equirect;
+use figurant_core::library::environment::map::Detail;
 use figurant_core::library::texture::{Encoding, Texture, color_from_srgb8};
 use figurant_core::plan::Output;
-use figurant_tests::drawlists::{self, add, empty, mixed, view};
+use figurant_tests::drawlists::{self, add, any_surroundings, empty, mixed, view};
 use figurant_tests::meshes::{self, Dice};
 use figurant_tests::oracle::{Oracle, display, nits, radiance};
-use glam::{DAffine3, DQuat, DVec3};
+use glam::{DAffine3, DMat3, DQuat, DVec3};
 use std::sync::Arc;
 
 use super::common::*;
@@ -36,6 +39,7 @@ fn shading_agrees_with_the_oracle() {
             .collect();
         list.lights.sky_lux = [0.8, 0.6, 0.4];
         list.lights.ground_lux = [0.1, 0.2, 0.3];
+        list.lights.surroundings = (seed % 2 == 1).then(|| any_surroundings(&mut dice));
         list.materials.iter_mut().for_each(|m| m.wrap = if dice.unit() < 0.3 { 0.3 } else { 0.0 });
         let frame = render(&list, &[Output::Rgb]);
         let oracle = Oracle::new(&list);
@@ -113,6 +117,59 @@ fn a_background_goes_through_the_same_exposure() {
     }
 }
 
+/// What reflects all light, whether matt, rough or polished metal, cannot be told from white
+/// surroundings, be they a picture or the same sky and ground.
+#[test]
+fn a_white_sphere_in_white_surroundings_vanishes() {
+    let white = Equirect::from_fn(64, |_| DVec3::ONE.as_vec3());
+    let map = Arc::new(EnvironmentMap::new(white, Detail::COMPUTED).unwrap());
+    for (roughness, metallic) in [(0.04, 0.0), (0.5, 0.0), (1.0, 0.0), (0.2, 1.0), (1.0, 1.0)] {
+        for picture in [true, false] {
+            let mut list = empty(view(96, 96, 120.0), 4);
+            list.lights.surroundings =
+                picture.then(|| Surroundings::new(Arc::clone(&map), DMat3::IDENTITY, 0.3));
+            let lux = 0.3 * std::f32::consts::PI;
+            (list.lights.sky_lux, list.lights.ground_lux) = ([lux; 3], [lux; 3]);
+            list.lights.background_nits = [0.3; 3];
+            let white = Material { roughness, metallic, ..plain([1.0; 3]) };
+            let place = DAffine3::from_translation(DVec3::new(0.0, 0.0, -4.0));
+            add(&mut list, meshes::sphere(96, 64), place, white);
+            let frame = render(&list, &[Output::Rgb]);
+            let wanted = i32::from(pixel(&frame, 0, 0)[0]);
+            assert!(f64::from((wanted - display(0.3, 1.0).round() as i32).abs()) < 1.5);
+            for v in frame.picture.unwrap() {
+                let off = (i32::from(v) - wanted).abs();
+                assert!(off <= 1, "roughness {roughness}, metallic {metallic}: {v}, not {wanted}");
+            }
+        }
+    }
+}
+
+/// Where nothing stands, a picture of all directions is seen in its place: a lamp 20 degrees to
+/// the right and 10 up, in a picture turned by 90 degrees.
+#[test]
+fn surroundings_stand_where_they_should() {
+    let angle = |deg: f64| deg.to_radians().tan();
+    let lamp = DVec3::new(angle(20.0), angle(10.0) / 20f64.to_radians().cos(), -1.0).normalize();
+    // To the left of the picture's middle, in its axes.
+    let map_from_view = DMat3::from_rotation_y(90f64.to_radians());
+    let in_map = map_from_view * lamp;
+    let light = |d: DVec3| DVec3::splat(if d.dot(in_map) > 0.9995 { 50.0 } else { 0.01 }).as_vec3();
+    let map = EnvironmentMap::new(Equirect::from_fn(512, light), Detail::COMPUTED).unwrap();
+    let mut list = empty(view(200, 160, 200.0), 1);
+    list.lights.surroundings = Some(Surroundings::new(Arc::new(map), map_from_view, 0.1));
+    let frame = render(&list, &[Output::Rgb]);
+    let bright: Vec<[f64; 2]> = (0..160 * 200)
+        .filter(|i| pixel(&frame, i % 200, i / 200)[0] > 200)
+        .map(|i| [(i % 200) as f64 + 0.5, (i / 200) as f64 + 0.5])
+        .collect();
+    assert!(!bright.is_empty());
+    let mean = |k: usize| bright.iter().map(|p| p[k]).sum::<f64>() / bright.len() as f64;
+    let wanted = [100.0 - 200.0 * lamp.x / lamp.z, 80.0 + 200.0 * lamp.y / lamp.z];
+    assert!((mean(0) - wanted[0]).abs() < 1.0, "{} and not {}", mean(0), wanted[0]);
+    assert!((mean(1) - wanted[1]).abs() < 1.0, "{} and not {}", mean(1), wanted[1]);
+}
+
 #[test]
 fn an_edge_is_blended_by_coverage_after_tone_mapping() {
     // A black square whose left edge halves a pixel column, before a bright background.
@@ -143,7 +200,11 @@ fn textures_are_read_upright_repeated_and_filtered_in_linear_light() {
     let (red, green, blue) = ([255, 0, 0], [0, 255, 0], [0, 0, 255]);
     let texels = [red, green, blue, [255; 3], [128; 3]].map(color_from_srgb8).to_vec();
     let mut list = empty(view(64, 64, 64.0), 4);
-    list.textures.push(Arc::new(Texture { log2_size: 1, encoding: Encoding::Color, texels }));
+    list.textures.push(Arc::new(Texture {
+        log2_size: 1,
+        encoding: Encoding::Color,
+        texels: texels.into(),
+    }));
     list.lights.sky_lux = [3.0; 3];
     list.lights.ground_lux = [3.0; 3];
     let material = Material {
@@ -162,7 +223,8 @@ fn textures_are_read_upright_repeated_and_filtered_in_linear_light() {
     assert_eq!(strongest(47, 47), [true, true, true]);
     // Halfway between black and white in green, top right to bottom left of two texels: linear.
     let texels = [0, 255, 0, 255, 128].map(|v| color_from_srgb8([v; 3])).to_vec();
-    list.textures[0] = Arc::new(Texture { log2_size: 1, encoding: Encoding::Color, texels });
+    list.textures[0] =
+        Arc::new(Texture { log2_size: 1, encoding: Encoding::Color, texels: texels.into() });
     let lit = |list: &DrawList, x: usize| {
         let value = pixel(&render(list, &[Output::Rgb]), x, 32)[1];
         nits(f64::from(value), 1.0)
@@ -183,7 +245,11 @@ fn a_tilted_normal_map_turns_the_light() {
     // Normals tilted towards growing u: light from the right counts more.
     let tilted = |x: u8, y: u8| {
         let texel = u32::from(x) | u32::from(y) << 8 | 0x00e0_0000;
-        vec![Arc::new(Texture { log2_size: 0, encoding: Encoding::Linear, texels: vec![texel] })]
+        vec![Arc::new(Texture {
+            log2_size: 0,
+            encoding: Encoding::Linear,
+            texels: vec![texel].into(),
+        })]
     };
     let brightness = |x: u8, y: u8, sun: [f32; 3]| {
         let mut list = empty(view(32, 32, 32.0), 1);
@@ -206,7 +272,11 @@ fn a_tilted_normal_map_turns_the_light() {
 fn masked_layers_replace_albedo_in_order() {
     let mut list = empty(view(32, 32, 32.0), 1);
     let texels = vec![0x00ff_00ff]; // channels 0 and 2 on, 1 and 3 off
-    list.textures.push(Arc::new(Texture { log2_size: 0, encoding: Encoding::Linear, texels }));
+    list.textures.push(Arc::new(Texture {
+        log2_size: 0,
+        encoding: Encoding::Linear,
+        texels: texels.into(),
+    }));
     let mut material = Material { mask: Some(0), ..plain([0.5; 3]) };
     material.layers = [[1.0, 0.0, 0.0, 1.0], [0.0, 1.0, 0.0, 1.0], [0.0, 0.0, 1.0, 1.0], [1.0; 4]];
     add(&mut list, meshes::square(), facing_square(20.0, DVec3::new(0.0, 0.0, -5.0)), material);

@@ -99,7 +99,7 @@ fn texture(color: impl Fn(usize, usize) -> [f64; 3]) -> Arc<Texture> {
             .collect();
         side = half;
     }
-    Arc::new(Texture { log2_size: 9, encoding: Encoding::Color, texels })
+    Arc::new(Texture { log2_size: 9, encoding: Encoding::Color, texels: texels.into() })
 }
 
 fn textures(dice: &mut Dice) -> Vec<Arc<Texture>> {

@@ -4,8 +4,11 @@ use std::sync::Arc;
 
 use figurant_core::draw::DrawList;
 use figurant_core::draw::abi::{
-    ColorGrade, Draw, DrawObject, Grade, Lights, Material, ToneCurve, View,
+    ColorGrade, Draw, DrawObject, Grade, Lights, Material, Surroundings, ToneCurve, View,
 };
+use figurant_core::library::environment::EnvironmentMap;
+use figurant_core::library::environment::equirect::Equirect;
+use figurant_core::library::environment::map::Detail;
 use figurant_core::library::mesh::Mesh;
 use glam::{DAffine3, DMat3, DQuat, DVec3};
 
@@ -101,6 +104,18 @@ pub fn any_grade(dice: &mut Dice) -> Grade {
         grain: if dice.unit() < 0.5 { 0.0 } else { 0.03 },
         grain_key: dice.below(1 << 30) as u32,
     }
+}
+
+/// A coloured sky with a small bright lamp in it, turned at random.
+pub fn any_surroundings(dice: &mut Dice) -> Surroundings {
+    let (lamp, tint) = (dice.direction(), DVec3::new(0.3, 0.25, 0.2));
+    let light = |d: DVec3| {
+        let glow = if d.dot(lamp) > 0.98 { 8.0 } else { 0.0 };
+        (DVec3::splat(0.5 + glow) + tint * d).as_vec3()
+    };
+    let map = EnvironmentMap::new(Equirect::from_fn(128, light), Detail::COMPUTED);
+    let turn = DMat3::from_axis_angle(dice.direction(), dice.range(0.0, 6.0));
+    Surroundings::new(Arc::new(map.unwrap()), turn, dice.range(0.1, 0.5))
 }
 
 /// Scale, then a random rotation, then a position.

@@ -6,7 +6,8 @@
 //! the same depth.
 
 use figurant_core::draw::DrawList;
-use figurant_core::draw::abi::{DrawObject, Material, View};
+use figurant_core::draw::abi::{DrawObject, Material, Surroundings, View};
+use figurant_core::library::environment::map::LEVELS;
 use glam::{DMat3, DVec2, DVec3};
 
 /// Edges closer to a sample than this leave it in doubt, pixels.
@@ -245,7 +246,10 @@ pub fn radiance(list: &DrawList, material: &Material, albedo: DVec3, hit: &Hit) 
     let f0 = DVec3::splat(0.04).lerp(albedo, metallic);
     let up = DVec3::from_array(list.view.view_from_world.map(|row| f64::from(row[1])));
     let (sky, ground) = (point(lights.sky_lux), point(lights.ground_lux));
-    let irradiance = |d: DVec3| ground.lerp(sky, 0.5 + 0.5 * d.dot(up));
+    let irradiance = |d: DVec3| match &lights.surroundings {
+        Some(surroundings) => surrounding_irradiance(surroundings, d),
+        None => ground.lerp(sky, 0.5 + 0.5 * d.dot(up)),
+    };
 
     let diffuse = albedo * (1.0 - metallic) / std::f64::consts::PI;
     let n_dot_v = n.dot(v).clamp(1e-3, 1.0);
@@ -257,8 +261,18 @@ pub fn radiance(list: &DrawList, material: &Material, albedo: DVec3, hit: &Hit) 
         0.022 * roughness - 0.04,
     ];
     let a = f64::min(r[0] * r[0], (1.0 - n_dot_v).powi(6)) * r[0] + r[1];
-    let mirror = f0 * (r[2] - 1.04 * a) + DVec3::splat(r[3] + 1.04 * a);
-    let mut sum = diffuse * irradiance(n) + mirror * irradiance(mirrored) / std::f64::consts::PI;
+    let [scale, bias] = [r[2] - 1.04 * a, r[3] + 1.04 * a];
+    let mirror = f0 * scale + DVec3::splat(bias);
+    // What leaves after several reflections; white in white must vanish.
+    let lost = (1.0 - scale - bias).max(0.0);
+    let mean = f0 + (DVec3::ONE - f0) / 21.0;
+    let again = mirror * mean * lost / (DVec3::ONE - mean * lost);
+    let seen = match &lights.surroundings {
+        Some(surroundings) => surrounding_light(surroundings, mirrored, roughness),
+        None => irradiance(mirrored) / std::f64::consts::PI,
+    };
+    let matt = diffuse * (DVec3::ONE - mirror - again) + again / std::f64::consts::PI;
+    let mut sum = mirror * seen + matt * irradiance(n);
 
     let mut add = |to_light: DVec3, illuminance: DVec3| {
         let cosine = n.dot(to_light);
@@ -280,6 +294,27 @@ pub fn radiance(list: &DrawList, material: &Material, albedo: DVec3, hit: &Hit) 
         add(to_light / distance, point(light.color_cd) / (near * near) * window * window);
     }
     sum
+}
+
+/// Irradiance that a picture of all directions gives a surface, view space.
+fn surrounding_irradiance(surroundings: &Surroundings, normal: DVec3) -> DVec3 {
+    let n = map_direction(surroundings, normal);
+    DVec3::from_array(surroundings.map.irradiance.of(n)) * f64::from(surroundings.nits_per_unit)
+}
+
+/// What a mirror of a roughness sees of it in a direction, view space.
+fn surrounding_light(surroundings: &Surroundings, direction: DVec3, roughness: f64) -> DVec3 {
+    let d = map_direction(surroundings, direction).as_vec3();
+    let level = roughness * (LEVELS - 1) as f64;
+    let lower = level as usize;
+    let light = |k: usize| surroundings.map.light(d, k.min(LEVELS - 1)).as_dvec3();
+    light(lower).lerp(light(lower + 1), level - lower as f64)
+        * f64::from(surroundings.nits_per_unit)
+}
+
+fn map_direction(surroundings: &Surroundings, direction: DVec3) -> DVec3 {
+    let row = |r: usize| DVec3::from_array(surroundings.map_from_view[r].map(f64::from));
+    DVec3::new(row(0).dot(direction), row(1).dot(direction), row(2).dot(direction))
 }
 
 /// GGX, Smith's visibility after Hammon, Schlick's Fresnel.

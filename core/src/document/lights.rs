@@ -6,7 +6,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{Color, Flag, Param, Vector};
+use super::{Choice, Color, Flag, Param, Vector};
 
 /// All light.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -208,6 +208,52 @@ pub struct Environment {
     pub background_nits: Param,
     /// Multiplies it.
     pub background_color: Color,
+    /// A picture of all directions, which stands in for sky, ground and background.
+    pub image: EnvironmentImage,
+}
+
+/// Light from all around as a picture of all directions.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+pub struct EnvironmentImage {
+    /// Id of a picture; `"any"` for one of all, `"sky"` for a sky computed from the sun's place,
+    /// `"none"` for none. Pictures are those of the program and the .hdr and .exr files, twice as
+    /// wide as high, of the folders in `assets`.
+    pub source: Choice<String>,
+    /// About the vertical; a computed sky is not turned.
+    pub rotation_deg: Param,
+    /// Illuminance of a surface, mean over all directions that it may face.
+    pub illuminance_lux: Param,
+    /// Of the computed sky.
+    pub sky: Sky,
+}
+
+impl Default for EnvironmentImage {
+    fn default() -> Self {
+        Self {
+            source: Choice::Always("none".to_owned()),
+            rotation_deg: Param::uniform(0.0, 360.0),
+            illuminance_lux: 1100.0.into(),
+            sky: Sky::default(),
+        }
+    }
+}
+
+/// The sky by the place of the sun, whether that shines or not; one below the horizon counts as
+/// one on it. The ground below has `ground_color`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+pub struct Sky {
+    /// 1.7 very clear .. 10 hazy.
+    pub turbidity: Param,
+    /// Share of the sky that clouds hide, 0..1.
+    pub cloud_cover: Param,
+}
+
+impl Default for Sky {
+    fn default() -> Self {
+        Self { turbidity: 3.0.into(), cloud_cover: 0.3.into() }
+    }
 }
 
 impl Default for Environment {
@@ -220,6 +266,7 @@ impl Default for Environment {
             ground_color: Color::srgb(1.0, 0.95, 0.9),
             background_nits: 400.0.into(),
             background_color: Color::srgb(0.6, 0.75, 1.0),
+            image: EnvironmentImage::default(),
         }
     }
 }

@@ -10,16 +10,19 @@ pub struct Preset {
 }
 
 /// All of them, the one to begin with first.
-pub const ALL: [Preset; 13] = [
+pub const ALL: [Preset; 16] = [
     Preset { name: "starter", text: include_str!("../../../presets/starter.json") },
     Preset {
         name: "peoplesanspeople",
         text: include_str!("../../../presets/peoplesanspeople.json"),
     },
+    Preset { name: "psp-hdri", text: include_str!("../../../presets/psp-hdri.json") },
     Preset { name: "everyday", text: include_str!("../../../presets/everyday.json") },
     Preset { name: "crowd", text: include_str!("../../../presets/crowd.json") },
+    Preset { name: "indoor", text: include_str!("../../../presets/indoor.json") },
     Preset { name: "portrait", text: include_str!("../../../presets/portrait.json") },
     Preset { name: "night", text: include_str!("../../../presets/night.json") },
+    Preset { name: "lighting", text: include_str!("../../../presets/lighting.json") },
     Preset { name: "falls", text: include_str!("../../../presets/falls.json") },
     Preset { name: "lineup", text: include_str!("../../../presets/lineup.json") },
     Preset { name: "ages", text: include_str!("../../../presets/ages.json") },

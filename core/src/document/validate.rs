@@ -144,6 +144,14 @@ fn environment(c: &mut Check, environment: &Environment) {
     c.color("lights.environment.ground_color", &environment.ground_color);
     c.param("lights.environment.background_nits", &environment.background_nits, amount);
     c.color("lights.environment.background_color", &environment.background_color);
+    let image = &environment.image;
+    c.ids("lights.environment.image.source", &image.source);
+    c.param("lights.environment.image.rotation_deg", &image.rotation_deg, ANGLE);
+    c.param("lights.environment.image.illuminance_lux", &image.illuminance_lux, amount);
+    let turbidity = Range::from_to(1.7, 10.0);
+    c.param("lights.environment.image.sky.turbidity", &image.sky.turbidity, turbidity);
+    let cover = Range::from_to(0.0, 1.0);
+    c.param("lights.environment.image.sky.cloud_cover", &image.sky.cloud_cover, cover);
 }
 
 fn background(c: &mut Check, background: &Background) {

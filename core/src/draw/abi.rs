@@ -3,6 +3,7 @@
 use std::ops::Range;
 use std::sync::Arc;
 
+use crate::library::environment::EnvironmentMap;
 use crate::library::mesh::Mesh;
 use crate::library::texture::Texture;
 
@@ -158,6 +159,22 @@ pub struct Lights {
     pub ground_lux: [f32; 3],
     /// Luminance where nothing stands, nits per channel.
     pub background_nits: [f32; 3],
+    /// Stands in for sky, ground and background.
+    pub surroundings: Option<Surroundings>,
+}
+
+/// Light from all directions, as a picture of it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Surroundings {
+    /// The picture, in its own axes.
+    pub map: Arc<EnvironmentMap>,
+    /// Rows of a rotation.
+    pub map_from_view: [[f32; 3]; 3],
+    /// Luminance of the map's 1.
+    pub nits_per_unit: f32,
+    /// Irradiance of a surface as a polynomial of its unit normal (x, y, z) in view space: factors,
+    /// lux per channel, of 1, x, y, z, xx, yy, zz, xy, yz, zx.
+    pub irradiance_lux: [[f32; 3]; 10],
 }
 
 /// A light at infinity.

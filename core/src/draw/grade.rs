@@ -7,20 +7,9 @@
 use glam::{DMat3, DVec3};
 
 use super::abi::{ColorGrade, Grade};
+use crate::base::color::XYZ_FROM_LINEAR;
 use crate::scene::Post;
 
-/// XYZ of linear Rec. 709 (IEC 61966-2-1), by columns.
-const XYZ_FROM_LINEAR: DMat3 = DMat3::from_cols_array(&[
-    0.412_390_8,
-    0.212_639_0,
-    0.019_330_8,
-    0.357_584_3,
-    0.715_168_7,
-    0.119_194_8,
-    0.180_480_8,
-    0.072_192_3,
-    0.950_532_2,
-]);
 /// Cone responses of XYZ: CAT02 (CIE 159:2004), by columns.
 const LMS_FROM_XYZ: DMat3 = DMat3::from_cols_array(&[
     0.7328, -0.7036, 0.0030, 0.4296, 1.6975, 0.0136, -0.1624, 0.0061, 0.9834,

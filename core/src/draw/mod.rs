@@ -87,6 +87,9 @@ pub enum DrawError {
     /// A texture that the scene names cannot be had.
     #[error(transparent)]
     Texture(#[from] TextureError),
+    /// The scene's sky gives no light.
+    #[error("the computed sky of lights.environment.image is black; give it another turbidity")]
+    BlackSky,
     /// The scene names a face target that the figure has not.
     #[error(transparent)]
     Figure(#[from] FigureError),
@@ -110,7 +113,7 @@ pub fn draw(
 ) -> Result<Drawn, DrawError> {
     let mut drawing = Drawing::new(scene, library, cast, *options);
     if options.shading {
-        drawing.drawn.list.lights = lights::in_view(scene, &drawing.view_from_world);
+        drawing.drawn.list.lights = lights::in_view(scene, library, &drawing.view_from_world)?;
     }
     if options.raster {
         objects::add(&mut drawing)?;

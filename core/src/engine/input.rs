@@ -118,7 +118,17 @@ fn check_view_and_lights(list: &DrawList) -> Result<(), EngineError> {
         }
     }
     let ambient = lights.sky_lux.iter().chain(&lights.ground_lux).chain(&lights.background_nits);
-    finite(NO_OBJECT, "a number of the surrounding light", ambient)
+    finite(NO_OBJECT, "a number of the surrounding light", ambient)?;
+    if let Some(surroundings) = &lights.surroundings {
+        let numbers = surroundings
+            .irradiance_lux
+            .iter()
+            .chain(&surroundings.map_from_view)
+            .flatten()
+            .chain(std::iter::once(&surroundings.nits_per_unit));
+        finite(NO_OBJECT, "a number of the surrounding light", numbers)?;
+    }
+    Ok(())
 }
 
 fn check_objects(list: &DrawList) -> Result<(), EngineError> {

@@ -210,6 +210,7 @@ pub fn catalogue(library: &Library) -> Catalogue {
         poses: library.poses.all().iter().map(|p| activity(&p.id, &p.activity)).collect(),
         textures: library.surface_textures(),
         cloth_patterns: library.textures.ids(TextureGroup::Cloth).to_vec(),
+        environments: library.environments.ids().to_vec(),
     }
 }
 

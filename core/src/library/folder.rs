@@ -2,6 +2,7 @@
 //!
 //! Only the list of names is read beforehand; a file is opened when its texture is asked for.
 
+use std::collections::BTreeMap;
 use std::io::Cursor;
 use std::path::{Path, PathBuf};
 
@@ -19,12 +20,35 @@ const MAX_FILE_BYTES: u64 = 1 << 29;
 /// How deep folders in folders are looked into.
 const MAX_DEPTH: usize = 16;
 
-/// All JPEG and PNG files below a folder, as (path with slashes from the folder, path), in order.
+/// All files of pictures below some folders by id: `folder/`, the name of their folder, and their path from
+/// there. A second folder of the same name is called `name~2`.
 ///
 /// # Errors
-/// When the folder is missing, is none, cannot be read, or holds neither such a file nor one of
+/// When a folder is missing, is none, cannot be read, or holds neither such a file nor one of
 /// poses or people.
-pub(super) fn list(folder: &Path) -> Result<Vec<(String, PathBuf)>, TextureError> {
+pub(super) fn named(folders: &[PathBuf]) -> Result<BTreeMap<String, PathBuf>, TextureError> {
+    let mut paths = BTreeMap::new();
+    let mut names: Vec<String> = Vec::new();
+    for path in folders {
+        let own = path
+            .file_name()
+            .map_or_else(|| "pictures".to_owned(), |n| n.to_string_lossy().into_owned());
+        let mut name = own.clone();
+        let mut count = 1;
+        while names.contains(&name) {
+            count += 1;
+            name = format!("{own}~{count}");
+        }
+        for (file, path) in list(path)? {
+            paths.insert(format!("folder/{name}/{file}"), path);
+        }
+        names.push(name);
+    }
+    Ok(paths)
+}
+
+/// All pictures below a folder, as (path with slashes from the folder, path), in order.
+fn list(folder: &Path) -> Result<Vec<(String, PathBuf)>, TextureError> {
     let unreadable = |source| TextureError::Unreadable { path: folder.to_owned(), source };
     match std::fs::metadata(folder) {
         Err(e) if e.kind() == std::io::ErrorKind::NotFound => {
@@ -72,16 +96,26 @@ fn walk(
             if depth < MAX_DEPTH {
                 walk(&path, &format!("{prefix}{name}/"), depth + 1, found)?;
             }
-        } else if is_picture(&name) {
+        } else if is_texture(&name) || is_environment(&name) {
             found.push((format!("{prefix}{name}"), path));
         }
     }
     Ok(())
 }
 
-fn is_picture(name: &str) -> bool {
+/// Whether a file can become a texture.
+pub(super) fn is_texture(name: &str) -> bool {
+    ends_with(name, &["jpg", "jpeg", "png"])
+}
+
+/// Whether a file can become surroundings.
+pub(super) fn is_environment(name: &str) -> bool {
+    ends_with(name, &["hdr", "exr"])
+}
+
+fn ends_with(name: &str, endings: &[&str]) -> bool {
     let ending = name.rsplit_once('.').map_or("", |(_, ending)| ending);
-    ["jpg", "jpeg", "png"].iter().any(|known| ending.eq_ignore_ascii_case(known))
+    endings.iter().any(|known| ending.eq_ignore_ascii_case(known))
 }
 
 /// The bytes of a picture file.

@@ -1,4 +1,4 @@
-//! Assets by id: human figures, motion clips, poses, textures and meshes.
+//! Assets by id: human figures, motion clips, poses, textures, surroundings and meshes.
 //!
 //! The only door to asset files. Values of this layer are immutable and shared by `Arc`; ids and
 //! content hashes are what scenes and manifests hold. What a frame shows is not decided here.
@@ -7,6 +7,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 pub mod clip;
+pub mod environment;
 pub mod figure;
 mod folder;
 pub mod mesh;
@@ -16,6 +17,7 @@ pub mod texture;
 pub mod textures;
 
 use clip::Clips;
+use environment::Environments;
 use figure::{Figure, FigureError};
 use pose::{PoseError, Poses};
 use textures::{TextureError, TextureGroup, TextureLibrary};
@@ -31,6 +33,8 @@ pub struct Library {
     pub poses: Poses,
     /// Textures of surfaces and cloth.
     pub textures: TextureLibrary,
+    /// Light from all around.
+    pub environments: Environments,
 }
 
 /// What SPDX writes where nobody has said anything: the terms of users' own files.
@@ -76,6 +80,7 @@ impl Library {
             clips: Clips::built_in(),
             poses: Poses::built_in().clone().with_folders(texture_folders)?,
             textures: textures.with_max_size(max_texture_size.max(1).ilog2()),
+            environments: Environments::new(texture_folders)?,
         })
     }
 
@@ -94,6 +99,7 @@ impl Library {
             ("figure/keypoints", "Apache-2.0", "Anny, NAVER Corp. 2025 (reduced)"),
             ("clips", "Zlib", "DeepMimic, as shipped with PyBullet 3.2.7"),
             ("poses", "CC0-1.0", "Figurant's own"),
+            ("hdri", "CC0-1.0", "Poly Haven, as packaged in @pmndrs/assets 1.7.0 (reduced)"),
         ];
         let of = |id: String, content_hash, licence, source| Licence {
             id,
@@ -106,6 +112,7 @@ impl Library {
             .textures
             .ids(TextureGroup::Folder)
             .iter()
+            .chain(self.environments.file_ids())
             .map(|id| of(id.clone(), None, NO_LICENCE, "picture folder of the config"));
         let poses = self.poses.files().iter().map(|file| {
             let hash = Some(file.content_hash.clone());

@@ -1,6 +1,6 @@
 //! Square textures with their mip levels, and how they are made from pixels.
 
-use std::sync::OnceLock;
+use std::sync::{Arc, OnceLock};
 
 use crate::base::color::linear_from_srgb;
 
@@ -27,7 +27,7 @@ pub struct Texture {
     /// How the texels are meant.
     pub encoding: Encoding,
     /// All levels, largest first.
-    pub texels: Vec<u32>,
+    pub texels: Arc<[u32]>,
 }
 
 impl Texture {
@@ -64,7 +64,7 @@ impl Texture {
                 }
             }
         }
-        Self { log2_size, encoding, texels }
+        Self { log2_size, encoding, texels: texels.into() }
     }
 
     /// A texture from an RGBA8 picture of any size, `width * height * 4` bytes, rows downwards;
@@ -101,7 +101,7 @@ impl Texture {
 
     /// Bytes that the texels occupy.
     #[must_use]
-    pub const fn size_bytes(&self) -> usize {
+    pub fn size_bytes(&self) -> usize {
         self.texels.len() * 4
     }
 }

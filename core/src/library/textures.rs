@@ -49,11 +49,13 @@ pub enum TextureGroup {
 pub enum TextureError {
     #[error("there is no texture \"{id}\"{}", suggestion(nearest))]
     Unknown { id: String, nearest: Option<String> },
+    #[error("there are no surroundings \"{id}\"{}", suggestion(nearest))]
+    UnknownEnvironment { id: String, nearest: Option<String> },
     #[error("texture folder {} does not exist; check the path", path.display())]
     Missing { path: PathBuf },
     #[error("texture folder {} is not a folder; name the folder that holds the pictures", path.display())]
     NotAFolder { path: PathBuf },
-    #[error("texture folder {} holds no .jpg, .jpeg or .png file and no .json file of poses or people; add some or drop the folder", path.display())]
+    #[error("texture folder {} holds no .jpg, .jpeg, .png, .hdr or .exr file and no .json file of poses or people; add some or drop the folder", path.display())]
     Empty { path: PathBuf },
     #[error("{} cannot be read: {source}", path.display())]
     Unreadable { path: PathBuf, source: std::io::Error },
@@ -87,42 +89,22 @@ pub struct TextureLibrary {
 impl TextureLibrary {
     /// The computed textures, and the pictures below some folders, listed by name and not opened.
     ///
-    /// A picture's id is `folder/`, the name of its folder, and its path from there; a second
-    /// folder of the same name is called `name~2`.
-    ///
     /// # Errors
     /// When a folder is missing, is none, cannot be read, or holds no picture and no poses or people.
     pub fn new(folders: &[PathBuf]) -> Result<Self, TextureError> {
-        let mut library = Self {
+        let mut paths = folder::named(folders)?;
+        paths.retain(|id, _| folder::is_texture(id));
+        Ok(Self {
             procedural: procedural::ids(Kind::Procedural),
             cloth: procedural::ids(Kind::Cloth),
             detail: procedural::ids(Kind::Detail),
             normal: procedural::normal_ids(),
-            folder: Vec::new(),
-            paths: BTreeMap::new(),
+            folder: paths.keys().cloned().collect(),
+            paths,
             max_log2_size: DEFAULT_LOG2_SIZE,
             cache: Cache::new(DEFAULT_LIMIT_BYTES),
             hashes: Mutex::default(),
-        };
-        let mut names: Vec<String> = Vec::new();
-        for path in folders {
-            let files = folder::list(path)?;
-            let own = path
-                .file_name()
-                .map_or_else(|| "pictures".to_owned(), |n| n.to_string_lossy().into_owned());
-            let mut name = own.clone();
-            let mut count = 1;
-            while names.contains(&name) {
-                count += 1;
-                name = format!("{own}~{count}");
-            }
-            for (file, path) in files {
-                library.paths.insert(format!("folder/{name}/{file}"), path);
-            }
-            names.push(name);
-        }
-        library.folder = library.paths.keys().cloned().collect();
-        Ok(library)
+        })
     }
 
     /// Sets how much memory textures may occupy before the one used longest ago is dropped, bytes.

@@ -2,18 +2,24 @@
 
 use glam::{DQuat, DVec3};
 
+use super::background::asset;
 use super::keys;
 use super::value::{color, flag, number, vector};
 use crate::base::math::rotation_from_euler_deg;
 use crate::base::rng::Draws;
 use crate::document;
 use crate::document::{MovingLight, SunDirection};
-use crate::scene::{Environment, Lights, PointLight, Sun};
+use crate::scene::{
+    Environment, EnvironmentImage, EnvironmentSource, Lights, PointLight, Sky, Sun,
+};
 
 /// The slot of the moving lamp among the lamps, beyond all that a document may list.
 const MOVING: u32 = 1 << 16;
+/// The id of the computed sky, beside those of pictures.
+pub(super) const SKY: &str = "sky";
 
-pub(super) fn lights(lights: &document::Lights, draws: Draws) -> Lights {
+/// `pictures` are the ids of the library's pictures of all directions.
+pub(super) fn lights(lights: &document::Lights, pictures: &[String], draws: Draws) -> Lights {
     let mut points = Vec::new();
     for (slot, lamp) in (0..).zip(&lights.points) {
         if lamp.enabled && flag(&lamp.on, draws.of(keys::LAMP_ON, slot)) {
@@ -30,7 +36,7 @@ pub(super) fn lights(lights: &document::Lights, draws: Draws) -> Lights {
     Lights {
         sun: lights.sun.enabled.then(|| sun(&lights.sun, draws)),
         points,
-        environment: environment(&lights.environment, draws),
+        environment: environment(lights, pictures, draws),
     }
 }
 
@@ -46,9 +52,10 @@ fn moving(lamp: &MovingLight, draws: Draws) -> Option<PointLight> {
     })
 }
 
-fn sun(sun: &document::Sun, draws: Draws) -> Sun {
+/// Where the sun stands, whether it shines or not.
+fn direction_to_sun(direction: &SunDirection, draws: Draws) -> DVec3 {
     let of = |key| draws.of(key, 0);
-    let direction_to_sun = match &sun.direction {
+    match direction {
         SunDirection::Clock(clock) => direction_by_clock(
             number(&clock.hour, of(keys::SUN_HOUR)),
             number(&clock.day_of_year, of(keys::SUN_DAY)),
@@ -58,9 +65,13 @@ fn sun(sun: &document::Sun, draws: Draws) -> Sun {
             number(&angles.azimuth_deg, of(keys::SUN_AZIMUTH)),
             number(&angles.elevation_deg, of(keys::SUN_ELEVATION)),
         ),
-    };
+    }
+}
+
+fn sun(sun: &document::Sun, draws: Draws) -> Sun {
+    let of = |key| draws.of(key, 0);
     Sun {
-        direction_to_sun,
+        direction_to_sun: direction_to_sun(&sun.direction, draws),
         illuminance_lux: number(&sun.illuminance_lux, of(keys::SUN_ILLUMINANCE)),
         color: color(&sun.color, of(keys::SUN_COLOR)),
         shadow: sun.shadow,
@@ -88,16 +99,16 @@ fn direction_by_clock(hour: f64, day_of_year: f64, latitude_deg: f64) -> DVec3 {
     DVec3::new(forward.x, -forward.y, -forward.z).normalize()
 }
 
-fn environment(environment: &document::Environment, draws: Draws) -> Environment {
+fn environment(lights: &document::Lights, pictures: &[String], draws: Draws) -> Environment {
+    let e = &lights.environment;
     let of = |key| draws.of(key, 0);
     let light = |amount, amount_key, tint, tint_key| {
         let amount = number(amount, of(amount_key));
         color(tint, of(tint_key)).map(|c| c * amount)
     };
-    if !environment.enabled {
-        return Environment { sky_lux: [0.0; 3], ground_lux: [0.0; 3], background_nits: [0.0; 3] };
+    if !e.enabled {
+        return Environment::default();
     }
-    let e = environment;
     Environment {
         sky_lux: light(&e.sky_lux, keys::SKY, &e.sky_color, keys::SKY_COLOR),
         ground_lux: light(&e.ground_lux, keys::GROUND, &e.ground_color, keys::GROUND_COLOR),
@@ -107,7 +118,32 @@ fn environment(environment: &document::Environment, draws: Draws) -> Environment
             &e.background_color,
             keys::BACKGROUND_COLOR,
         ),
+        image: image(lights, pictures, draws),
     }
+}
+
+/// The picture of all directions, if there is one.
+fn image(lights: &document::Lights, pictures: &[String], draws: Draws) -> Option<EnvironmentImage> {
+    let (e, image) = (&lights.environment, &lights.environment.image);
+    let of = |key| draws.of(key, 0);
+    let source = match asset(&image.source, pictures, of(keys::IMAGE))?.as_str() {
+        SKY => {
+            let place = of(keys::SKY_CLOUD_PLACE);
+            EnvironmentSource::Sky(Sky {
+                direction_to_sun: direction_to_sun(&lights.sun.direction, draws),
+                turbidity: number(&image.sky.turbidity, of(keys::SKY_TURBIDITY)),
+                cloud_cover: number(&image.sky.cloud_cover, of(keys::SKY_CLOUD_COVER)),
+                cloud_place: [place.lane(0).uniform(), place.lane(1).uniform()],
+                ground_color: color(&e.ground_color, of(keys::GROUND_COLOR)),
+            })
+        }
+        id => EnvironmentSource::Picture(id.to_owned()),
+    };
+    Some(EnvironmentImage {
+        source,
+        rotation_deg: number(&image.rotation_deg, of(keys::IMAGE_ROTATION)),
+        illuminance_lux: number(&image.illuminance_lux, of(keys::IMAGE_ILLUMINANCE)),
+    })
 }
 
 #[cfg(test)]
@@ -170,7 +206,10 @@ mod tests {
         fewer.points[4].on = document::Flag::Always(false);
         fewer.sun.enabled = false;
         for frame in 0..50 {
-            let (a, b) = (lights(&all, Draws::new(1, frame)), lights(&fewer, Draws::new(1, frame)));
+            let (a, b) = (
+                lights(&all, &[], Draws::new(1, frame)),
+                lights(&fewer, &[], Draws::new(1, frame)),
+            );
             assert!(b.points.iter().all(|p| a.points.contains(p)));
             assert!(a.points.len() - b.points.len() <= 2);
             assert_eq!(a.environment, b.environment);

@@ -49,6 +49,8 @@ pub struct Catalogue {
     pub textures: Vec<String>,
     /// Patterns of cloth.
     pub cloth_patterns: Vec<String>,
+    /// Pictures of all directions.
+    pub environments: Vec<String>,
 }
 
 /// A clip or a pose by name.
@@ -125,7 +127,7 @@ impl Sampler {
             frame,
             seed: document.seed,
             camera: camera::camera(document, draws),
-            lights: lights::lights(&document.lights, draws),
+            lights: lights::lights(&document.lights, &catalogue.environments, draws),
             exposure_ev100: post::exposure_ev100(&document.post, draws),
             post: post::post(&document.post, draws),
             objects: background::objects(document, catalogue, draws),
@@ -188,7 +190,17 @@ pub fn check_assets(document: &Document, catalogue: &Catalogue) -> Vec<Problem> 
     let patterns = ("cloth pattern", &catalogue.cloth_patterns, true);
     let (top, bottom) = (&people.wardrobe.top, &people.wardrobe.bottom);
     let outer = &people.wardrobe.outer;
+    let environment = &document.lights.environment;
+    let mut pictures = catalogue.environments.clone();
+    pictures.push(lights::SKY.to_owned());
+    let surroundings = ("picture of surroundings", &pictures, true);
     let all = [
+        (
+            environment.enabled,
+            "lights.environment.image.source",
+            &environment.image.source,
+            surroundings,
+        ),
         (wall.enabled, "background.wall.texture", &wall.texture, textures),
         (floor.enabled, "background.floor.texture", &floor.texture, textures),
         (occluders.enabled, "occluders.texture", &occluders.texture, textures),

@@ -93,7 +93,7 @@ pub struct PointLight {
 
 /// Light from all around: the irradiance of a surface facing up and of one facing down, blended
 /// by the normal's y (a hemisphere light).
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Environment {
     /// Linear colour times lux on a surface that faces the sky.
     pub sky_lux: [f64; 3],
@@ -101,6 +101,46 @@ pub struct Environment {
     pub ground_lux: [f64; 3],
     /// Linear luminance in nits of the background where nothing stands.
     pub background_nits: [f64; 3],
+    /// Stands in for all of these.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub image: Option<EnvironmentImage>,
+}
+
+/// Light from all around as a picture of all directions.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct EnvironmentImage {
+    /// What it shows.
+    pub source: EnvironmentSource,
+    /// About the vertical, counter-clockwise seen from above. At 0 the middle of a picture lies
+    /// along -Z. A computed sky goes by its sun and is not turned.
+    pub rotation_deg: f64,
+    /// Illuminance of a surface, mean over all directions that it may face.
+    pub illuminance_lux: f64,
+}
+
+/// Where a picture of all directions comes from.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum EnvironmentSource {
+    /// The library, by id.
+    Picture(String),
+    /// Computed.
+    Sky(Sky),
+}
+
+/// Clear air, and clouds.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Sky {
+    /// Unit vector, world.
+    pub direction_to_sun: DVec3,
+    /// 1.7 very clear .. 10 hazy.
+    pub turbidity: f64,
+    /// Share of the sky that clouds hide, 0..1.
+    pub cloud_cover: f64,
+    /// Where in the field of clouds the zenith is, both 0..1.
+    pub cloud_place: [f64; 2],
+    /// Linear colour of the ground below the horizon.
+    pub ground_color: [f64; 3],
 }
 
 /// Something that is not a person.

@@ -6,7 +6,7 @@
 //! implementation" (2023). The formulas stand in `shaders/shared/develop.wgsl` as well.
 
 use super::samples::{Layout, TILE};
-use super::shade::TileColor;
+use super::shade::{Stage, TileColor};
 use super::simd::{F32x8, LANES, Vec3x8, kernel};
 use crate::draw::DrawList;
 use crate::draw::abi::{ColorGrade, ToneCurve};
@@ -153,11 +153,17 @@ fn agx_curve<const AVX2: bool>(v: F32x8<AVX2>) -> F32x8<AVX2> {
         - s(0.002_32)
 }
 
+/// What shows where nothing stands.
+pub(super) struct Backdrop {
+    /// Exposed light, where there is no picture of the surroundings.
+    pub(super) light: [f32; 3],
+}
+
 kernel! {
     /// Starts a tile's colours with what shows where nothing stands; `share` by pixel slot.
     fn start_with_background[const S: usize](
-        develop: &Develop,
-        background: [f32; 3],
+        stage: &Stage<'_>,
+        backdrop: &Backdrop,
         origin_px: [u32; 2],
         share: &[f32],
         color: &mut TileColor,
@@ -166,25 +172,33 @@ kernel! {
 
 #[inline(always)]
 fn start_with_background_body<const AVX2: bool, const S: usize>(
-    develop: &Develop,
-    background: [f32; 3],
+    stage: &Stage<'_>,
+    backdrop: &Backdrop,
     origin_px: [u32; 2],
     share: &[f32],
     color: &mut TileColor,
 ) {
     let [red, green, blue] = color;
-    let plain = develop.display::<AVX2>(Vec3x8::splat(background), [F32x8::ZERO; 2]);
+    let develop = &stage.develop;
+    let environment = stage.lighting.environment();
+    let varies = develop.vignette.is_some() || environment.is_some();
+    let mut exposed = Vec3x8::splat(backdrop.light);
+    let plain = develop.display::<AVX2>(exposed, [F32x8::ZERO; 2]);
     for first in (0..TILE * TILE).step_by(LANES) {
         let share = F32x8::<AVX2>::load(&share[first..]);
         let mut light = plain;
-        if develop.vignette.is_some() && share.gt(F32x8::ZERO).any() {
+        if varies && share.gt(F32x8::ZERO).any() {
             let places = &Layout::<S>::SLOT_XY[first..first + LANES];
             let (mut x, mut y) = ([0.0; LANES], [0.0; LANES]);
             for (lane, xy) in places.iter().enumerate() {
                 x[lane] = (origin_px[0] + u32::from(xy[0])) as f32 + 0.5;
                 y[lane] = (origin_px[1] + u32::from(xy[1])) as f32 + 0.5;
             }
-            light = develop.display(Vec3x8::splat(background), [F32x8(x), F32x8(y)]);
+            let at = [F32x8(x), F32x8(y)];
+            if let Some(environment) = environment {
+                exposed = environment.seen(stage.rays.through(at));
+            }
+            light = develop.display(exposed, at);
         }
         (light.x * share).store(&mut red[first..]);
         (light.y * share).store(&mut green[first..]);

@@ -39,7 +39,7 @@ use std::sync::{Mutex, PoisonError};
 use rayon::prelude::*;
 
 use self::chunk::{Chunk, ChunkList};
-use self::develop::Develop;
+use self::develop::{Backdrop, Develop};
 use self::project::{Projection, ScreenVertex};
 use self::samples::TILE;
 use self::setup::Target;
@@ -363,7 +363,7 @@ fn shading<'a>(
             develop: Develop::new(list),
         },
         surfaces: list.materials.iter().map(|m| Surface::new(m, list)).collect(),
-        background: list.lights.background_nits.map(|nits| nits * list.exposure),
+        backdrop: Backdrop { light: list.lights.background_nits.map(|nits| nits * list.exposure) },
     }
 }
 

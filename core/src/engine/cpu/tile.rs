@@ -117,8 +117,7 @@ pub(super) struct TilePass<'a> {
 pub(super) struct Shading<'a> {
     pub(super) stage: Stage<'a>,
     pub(super) surfaces: Vec<Surface<'a>>,
-    /// Exposed light where nothing stands.
-    pub(super) background: [f32; 3],
+    pub(super) backdrop: develop::Backdrop,
 }
 
 /// The part of the frame's buffers that a row of tiles fills; empty where not wanted.
@@ -212,8 +211,8 @@ impl TilePass<'_> {
             gather::<S>(self.level, &mut s.fragments, self.list.draws.len(), &visible);
             develop::start_with_background::<S>(
                 self.level,
-                &shading.stage.develop,
-                shading.background,
+                &shading.stage,
+                &shading.backdrop,
                 origin_px,
                 &s.fragments.background,
                 &mut s.color,

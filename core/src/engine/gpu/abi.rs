@@ -36,6 +36,13 @@ pub struct Frame {
     pub contrast: f32,
     pub grain: f32,
     pub tone_curve: u32,
+    pub has_environment: u32,
+    pub environment_unit: f32,
+    pub pad5: u32,
+    pub pad6: u32,
+    pub environment_from_view: [[f32; 4]; 3],
+    pub environment_levels: [[u32; 4]; 3],
+    pub environment_irradiance: [[f32; 4]; 10],
 }
 
 /// A picture that is rastered: a band of the camera's, or the sun's map.

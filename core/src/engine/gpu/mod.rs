@@ -51,7 +51,7 @@ use std::time::Instant;
 use self::abi::{Bounds, Counters, LARGE_ROOM, MAX_LAMPS, ObjectSums, Primitive};
 use self::buffers::Buffers;
 use self::device::Device;
-use self::pack::{Packed, Wanted};
+use self::pack::{Packed, Places, Wanted};
 use self::pool::Pool;
 use self::present::Presenter;
 use self::readback::{Band, Counted, Readback};
@@ -147,7 +147,7 @@ struct State {
     device: Device,
     buffers: Buffers,
     meshes: Pool<Mesh>,
-    textures: Pool<Texture>,
+    textures: Pool<[u32]>,
     packed: Packed,
     readback: Readback,
     present: Option<Presenter>,
@@ -266,37 +266,42 @@ impl State {
         let wanted = Wanted::new(list, shadow);
         let places = times.measure("upload", || self.place(list, plan, &wanted))?;
         times.measure("pack", || {
-            self.packed.fill(list, &wanted, shadow, [&places[0], &places[1]]);
+            self.packed.fill(list, &wanted, shadow, &places);
             self.write(list, shadow)
         })
     }
 
-    /// Where the meshes and the textures of a draw list stand, after those that were not there yet
+    /// Where the meshes and the texels of a draw list stand, after those that were not there yet
     /// were brought to the device.
     fn place(
         &mut self,
         list: &DrawList,
         plan: &PassPlan,
         wanted: &Wanted,
-    ) -> Result<[Vec<u32>; 2], EngineError> {
+    ) -> Result<Places, EngineError> {
         let device = &self.device;
         let needed = |i: &usize| wanted.any(*i);
         let used = (0..list.objects.len()).filter(needed).map(|i| &list.objects[i].mesh);
         self.meshes.begin(device, used);
-        let mut mesh_places = vec![0; list.objects.len()];
+        let mut meshes = vec![0; list.objects.len()];
         for i in (0..list.objects.len()).filter(needed) {
             let mesh = &list.objects[i].mesh;
             let words = pack::mesh_words(mesh);
-            mesh_places[i] = self.meshes.place(device, mesh, words, pack::mesh_content)?;
+            meshes[i] = self.meshes.place(device, mesh, words, pack::mesh_content)?;
         }
         let shaded: &[Arc<Texture>] = if plan.runs(Pass::Shade) { &list.textures } else { &[] };
-        self.textures.begin(device, shaded.iter());
-        let mut texture_places = vec![0; list.textures.len()];
-        for (place, texture) in texture_places.iter_mut().zip(shaded) {
-            let words = texture.texels.len() as u64;
-            *place = self.textures.place(device, texture, words, |t, _| &t.texels)?;
+        let surroundings = list.lights.surroundings.as_ref().filter(|_| plan.runs(Pass::Shade));
+        let pictures = surroundings.map(|s| &s.map.texels);
+        self.textures.begin(device, shaded.iter().map(|t| &t.texels).chain(pictures));
+        let mut place = |texels: &Arc<[u32]>| {
+            self.textures.place(device, texels, texels.len() as u64, |texels, _| texels)
+        };
+        let mut textures = vec![0; list.textures.len()];
+        for (to, texture) in textures.iter_mut().zip(shaded) {
+            *to = place(&texture.texels)?;
         }
-        Ok([mesh_places, texture_places])
+        let surroundings = pictures.map(place).transpose()?.unwrap_or_default();
+        Ok(Places { meshes, textures, surroundings })
     }
 
     /// Writes the packed records, and makes room for what depends on their number.

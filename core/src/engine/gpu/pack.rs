@@ -33,6 +33,16 @@ impl Wanted {
     }
 }
 
+/// Where in their pools the parts of a draw list stand, words.
+pub struct Places {
+    /// By object.
+    pub meshes: Vec<u32>,
+    /// By texture.
+    pub textures: Vec<u32>,
+    /// Of the picture of the surroundings, if there is one; in the pool of the textures.
+    pub surroundings: u32,
+}
+
 /// The records of one frame; keeps its memory for the next.
 #[derive(Default)]
 pub struct Packed {
@@ -78,13 +88,8 @@ pub fn mesh_content<'a>(mesh: &'a Mesh, words: &'a mut Vec<u32>) -> &'a [u32] {
 
 impl Packed {
     /// Packs a draw list whose meshes and textures stand at these places in their pools.
-    pub fn fill(
-        &mut self,
-        list: &DrawList,
-        wanted: &Wanted,
-        shadow: bool,
-        [meshes, textures]: [&[u32]; 2],
-    ) {
+    pub fn fill(&mut self, list: &DrawList, wanted: &Wanted, shadow: bool, places: &Places) {
+        let Places { meshes, textures, surroundings } = places;
         self.vertex_batches.clear();
         self.batches.clear();
         self.sun_batches.clear();
@@ -111,6 +116,7 @@ impl Packed {
             per_radius_m: 1.0 / p.radius_m.max(1e-6),
         }));
         self.frame = frame(list, shadow);
+        add_surroundings(&mut self.frame, list, *surroundings);
     }
 
     fn add_objects(&mut self, list: &DrawList, wanted: &Wanted, meshes: &[u32]) -> Vec<u32> {
@@ -245,6 +251,21 @@ fn frame(list: &DrawList, shadow: bool) -> Frame {
     }
     add_grade(&mut frame, &list.grade);
     frame
+}
+
+/// Adds the picture of the surroundings, which starts at a word of the pool.
+fn add_surroundings(frame: &mut Frame, list: &DrawList, first: u32) {
+    let Some(surroundings) = &list.lights.surroundings else { return };
+    let unit = list.exposure;
+    frame.has_environment = 1;
+    frame.environment_unit = surroundings.nits_per_unit * unit;
+    frame.environment_from_view = surroundings.map_from_view.map(|[x, y, z]| [x, y, z, 0.0]);
+    let levels = surroundings.map.levels.map(|l| [first + l.first, l.log2_width]);
+    for (to, two) in frame.environment_levels.iter_mut().zip(levels.as_chunks::<2>().0) {
+        *to = [two[0][0], two[0][1], two[1][0], two[1][1]];
+    }
+    frame.environment_irradiance =
+        surroundings.irradiance_lux.map(|[r, g, b]| [r * unit, g * unit, b * unit, 0.0]);
 }
 
 /// Adds what develops the light.

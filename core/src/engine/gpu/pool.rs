@@ -1,4 +1,4 @@
-//! What stays on the device from frame to frame: meshes or textures, each uploaded once.
+//! What stays on the device from frame to frame: meshes or texels, each uploaded once.
 //!
 //! One buffer holds them all. An item is known by the address of its shared value; a weak
 //! reference keeps that address from being used again. When there is no room the buffer grows, up
@@ -13,7 +13,7 @@ use crate::engine::EngineError;
 /// Words of a new buffer.
 const FIRST_WORDS: u64 = 1 << 20;
 
-struct Item<T> {
+struct Item<T: ?Sized> {
     /// Keeps the address.
     held: Weak<T>,
     first: u64,
@@ -21,7 +21,7 @@ struct Item<T> {
 }
 
 /// Items of one kind in one buffer.
-pub struct Pool<T> {
+pub struct Pool<T: ?Sized> {
     what: &'static str,
     buffer: Option<wgpu::Buffer>,
     words: u64,
@@ -33,7 +33,7 @@ pub struct Pool<T> {
     scratch: Vec<u32>,
 }
 
-impl<T> Pool<T> {
+impl<T: ?Sized> Pool<T> {
     /// An empty pool; `what` names its items in errors.
     pub const fn new(what: &'static str) -> Self {
         Self {
@@ -159,7 +159,7 @@ impl<T> Pool<T> {
     }
 }
 
-fn address<T>(item: &Arc<T>) -> usize {
+fn address<T: ?Sized>(item: &Arc<T>) -> usize {
     Arc::as_ptr(item).addr()
 }
 

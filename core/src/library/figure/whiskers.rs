@@ -167,7 +167,7 @@ mod tests {
         assert_eq!(painted.texels.len(), plain.texels.len());
         let (mut more, mut less) = (0, 0);
         let side = 1usize << plain.log2_size;
-        for (a, b) in plain.texels[..side * side].iter().zip(&painted.texels) {
+        for (a, b) in plain.texels[..side * side].iter().zip(painted.texels.iter()) {
             assert_eq!(a & 0x00ff_ffff, b & 0x00ff_ffff);
             more += usize::from(b >> 24 > a >> 24);
             less += usize::from(b >> 24 < a >> 24);

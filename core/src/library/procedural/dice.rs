@@ -6,7 +6,7 @@
 
 /// A stream of random numbers.
 #[derive(Clone, Debug)]
-pub(super) struct Dice(u64);
+pub(in crate::library) struct Dice(u64);
 
 impl Dice {
     /// The stream of an id.

@@ -5,7 +5,7 @@ use super::dice::Dice;
 
 /// One number for each pixel of the canvas, wrapping at all sides.
 #[derive(Clone, Debug)]
-pub(super) struct Field(pub Vec<f32>);
+pub(in crate::library) struct Field(pub Vec<f32>);
 
 impl Field {
     pub fn filled(value: f32) -> Self {

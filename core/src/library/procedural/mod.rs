@@ -18,8 +18,8 @@ mod scenery;
 mod surface;
 
 use canvas::Canvas;
-use dice::Dice;
-use field::Field;
+pub(super) use dice::Dice;
+pub(super) use field::Field;
 
 use super::texture::{Encoding, Texture};
 

@@ -14,14 +14,23 @@
 //!
 //! Normals may lean away from the viewer: `n.v` is taken as at least 0.001, also within
 //! `n.h = (n.l + n.v) / |l + v|`, which is at most 1. `wrap` w replaces the `n.l` of the Lambert term by `max(n.l + w, 0) / (1 + w)^2`, which keeps
-//! the energy. Surrounding light: the irradiance of the hemisphere of sky and ground for the
-//! Lambert term, and for the mirror term that of the mirrored direction over pi, times Karis'
-//! fit of the split sum ("Physically based shading on mobile", 2014) with `(1 - n.v)^6` for its
-//! exponential.
+//! the energy. Surrounding light: its irradiance E and what a mirror of the roughness sees L, from
+//! a picture of it, or from the hemisphere of sky and ground, of which a mirror sees E / pi of the
+//! mirrored direction. With Karis' fit of the split sum ("Physically based shading on mobile",
+//! 2014), with `(1 - n.v)^6` for its exponential, and the light that leaves rough surfaces after
+//! several reflections (Fdez-Aguera, "A multiple-scattering microfacet model for real-time
+//! image-based lighting", 2019), so that nothing is lost and white in white vanishes:
+//!
+//! ```text
+//! F1 = f0 scale + bias        lost = 1 - (scale + bias)        Fm = f0 + (1 - f0) / 21
+//! Fn = F1 Fm lost / (1 - Fm lost)
+//! L F1 + E / pi (Fn + albedo (1 - metallic) (1 - F1 - Fn))
+//! ```
 
 use std::f32::consts::PI;
 
 use super::GROUPS;
+use super::environment::EnvironmentLight;
 use super::material::Look;
 use super::surface::Points;
 use crate::draw::abi::Lights;
@@ -67,11 +76,13 @@ pub(in crate::engine::cpu) struct Lighting<'a> {
     ground: [f32; 3],
     /// World +Y in view space.
     up: [f32; 3],
+    /// Stands in for sky and ground.
+    environment: Option<EnvironmentLight<'a>>,
 }
 
 impl<'a> Lighting<'a> {
     pub(in crate::engine::cpu) fn new(
-        lights: &Lights,
+        lights: &'a Lights,
         exposure: f32,
         view_from_world: &[[f32; 4]; 3],
         shadow: Option<SunShadow<'a>>,
@@ -94,7 +105,13 @@ impl<'a> Lighting<'a> {
             sky: exposed(lights.sky_lux),
             ground: exposed(lights.ground_lux),
             up: view_from_world.map(|row| row[1]),
+            environment: lights.surroundings.as_ref().map(|s| EnvironmentLight::new(s, exposure)),
         }
+    }
+
+    /// The picture of what stands behind everything, if there is one.
+    pub(in crate::engine::cpu) const fn environment(&self) -> Option<&EnvironmentLight<'a>> {
+        self.environment.as_ref()
     }
 
     /// Names the point lights whose range reaches a view-space box.
@@ -204,20 +221,36 @@ impl<'a> Lighting<'a> {
         }
     }
 
-    /// Sky and ground.
+    /// Light from all around.
     #[inline(always)]
     fn surrounding<const AVX2: bool>(
         &self,
         r: &Reflector<AVX2>,
         roughness: F32x8<AVX2>,
     ) -> Vec3x8<AVX2> {
-        let up = Vec3x8::splat(self.up);
-        let upwards = r.normal.dot(up);
-        let mirrored_upwards = (r.n_dot_v + r.n_dot_v) * upwards - r.to_viewer.dot(up);
+        let both_ways = r.n_dot_v + r.n_dot_v;
+        let (irradiance, mirrored) = match &self.environment {
+            Some(environment) => {
+                let direction = r.normal.scale(both_ways) - r.to_viewer;
+                let mirrored = environment.mirrored(direction, roughness);
+                (environment.irradiance(r.normal), mirrored)
+            }
+            None => {
+                let up = Vec3x8::splat(self.up);
+                let upwards = r.normal.dot(up);
+                let mirrored = self.hemisphere(both_ways * upwards - r.to_viewer.dot(up));
+                (self.hemisphere(upwards), mirrored.scale(F32x8::splat(1.0 / PI)))
+            }
+        };
         let [scale, bias] = split_sum(roughness, r.n_dot_v);
+        let one = Vec3x8::splat([1.0; 3]);
         let bias = Vec3x8::new(bias, bias, bias);
-        let mirror = (r.f0.scale(scale) + bias).scale(F32x8::splat(1.0 / PI));
-        self.hemisphere(upwards) * r.diffuse + self.hemisphere(mirrored_upwards) * mirror
+        let single = r.f0.scale(scale) + bias;
+        let lost = (F32x8::ONE - (scale + bias.x)).max(F32x8::ZERO);
+        let mean = r.f0.mix(one, F32x8::splat(1.0 / 21.0));
+        let again = (single * mean).scale(lost) / (one - mean.scale(lost));
+        let matt = r.diffuse * (one - single - again) + again.scale(F32x8::splat(1.0 / PI));
+        mirrored * single + irradiance * matt
     }
 
     /// Irradiance of surfaces that face so far upwards, -1..1.

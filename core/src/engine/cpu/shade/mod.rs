@@ -4,6 +4,7 @@
 //! tile's colours. Developing comes before the sum over a pixel's fragments, so that a bright
 //! edge stays smooth; the sum is made in linear display light.
 
+mod environment;
 mod light;
 mod material;
 mod surface;

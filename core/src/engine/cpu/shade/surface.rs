@@ -39,6 +39,19 @@ impl Rays {
     pub(in crate::engine::cpu) fn new(view: &View) -> Self {
         Self { center: [view.cx, view.cy], step: [1.0 / view.fx, -1.0 / view.fy] }
     }
+
+    /// Directions through positions in the picture, view space, z = -1.
+    #[inline(always)]
+    pub(in crate::engine::cpu) fn through<const AVX2: bool>(
+        &self,
+        [x, y]: [F32x8<AVX2>; 2],
+    ) -> Vec3x8<AVX2> {
+        Vec3x8::new(
+            (x - F32x8::splat(self.center[0])) * F32x8::splat(self.step[0]),
+            (y - F32x8::splat(self.center[1])) * F32x8::splat(self.step[1]),
+            F32x8::splat(-1.0),
+        )
+    }
 }
 
 /// Surface under eight fragments.
@@ -145,14 +158,10 @@ pub(super) fn points<const AVX2: bool>(
     geometry: &Geometry<'_>,
     rays: &Rays,
     ids: &[u32; LANES],
-    [x, y]: [F32x8<AVX2>; 2],
+    at: [F32x8<AVX2>; 2],
     textured: Textured,
 ) -> Points<AVX2> {
-    let ray = Vec3x8::new(
-        (x - F32x8::splat(rays.center[0])) * F32x8::splat(rays.step[0]),
-        (y - F32x8::splat(rays.center[1])) * F32x8::splat(rays.step[1]),
-        F32x8::splat(-1.0),
-    );
+    let ray = rays.through(at);
     let triangles = Triangles::new(geometry, ids);
     let origin = vector(&triangles.origin, 0);
     let (edge1, edge2) = (vector(&triangles.edge1, 0), vector(&triangles.edge2, 0));

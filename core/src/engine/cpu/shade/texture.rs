@@ -163,13 +163,13 @@ mod tests {
             let side = 1usize << (log2_size - level);
             texels.resize(texels.len() + side * side, color_from_srgb8([64 * level as u8; 3]));
         }
-        Texture { log2_size, encoding: Encoding::Color, texels }
+        Texture { log2_size, encoding: Encoding::Color, texels: texels.into() }
     }
 
     #[test]
     fn levels_start_where_textures_put_them() {
         for log2_size in 0..14 {
-            let texture = Texture { log2_size, encoding: Encoding::Linear, texels: vec![0] };
+            let texture = Texture { log2_size, encoding: Encoding::Linear, texels: vec![0].into() };
             let sampler = Sampler::new(&texture);
             for level in 0..=log2_size {
                 let log2_side = I32x8::<false>::splat((log2_size - level) as i32);
@@ -204,7 +204,7 @@ mod tests {
     #[test]
     fn the_middle_of_a_texel_is_the_texel() {
         let texels: Vec<u32> = (0..16).chain(0..4).chain(0..1).collect();
-        let texture = Texture { log2_size: 2, encoding: Encoding::Linear, texels };
+        let texture = Texture { log2_size: 2, encoding: Encoding::Linear, texels: texels.into() };
         let sampler = Sampler::new(&texture);
         let uv = [F32x8::<false>::splat(2.0 + 0.625), F32x8::<false>::splat(0.375)]; // column 2, row 1
         let got = sampler.sample::<false, 1>(uv, F32x8::<false>::splat(-8.0))[0].0[0];

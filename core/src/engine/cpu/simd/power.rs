@@ -11,7 +11,7 @@ const ROOT_HALF: i32 = 0x3f35_04f3;
 impl<const AVX2: bool> I32x8<AVX2> {
     /// The numbers that these are the bits of.
     #[inline(always)]
-    fn as_f32(self) -> F32x8<AVX2> {
+    pub(in crate::engine::cpu) fn as_f32(self) -> F32x8<AVX2> {
         either! {
             avx2: cast(self),
             lanes: F32x8(lanes!(0.0, i => f32::from_bits(self.0[i] as u32))),

@@ -1,6 +1,6 @@
 //! Eight vectors.
 
-use std::ops::{Add, Mul, Sub};
+use std::ops::{Add, Div, Mul, Sub};
 
 use super::F32x8;
 
@@ -75,6 +75,14 @@ impl<const AVX2: bool> Sub for Vec3x8<AVX2> {
     #[inline(always)]
     fn sub(self, o: Self) -> Self {
         Self { x: self.x - o.x, y: self.y - o.y, z: self.z - o.z }
+    }
+}
+
+impl<const AVX2: bool> Div for Vec3x8<AVX2> {
+    type Output = Self;
+    #[inline(always)]
+    fn div(self, o: Self) -> Self {
+        Self { x: self.x / o.x, y: self.y / o.y, z: self.z / o.z }
     }
 }
 

@@ -1,0 +1,113 @@
+//! Surroundings by id: light from all directions, as pictures.
+//!
+//! | ids | what |
+//! |---|---|
+//! | `hdri/<name>` | photographs that are part of the program |
+//! | `folder/<folder>/<file>` | a user's .hdr or .exr by its path below the folder |
+//!
+//! [`equirect`] says how such a picture stands for directions, [`map`] what engines read, `filter`
+//! what surfaces make of it, [`sky`] computes one from the sun. Nothing is unpacked before it is
+//! asked for; what was used last is kept up to a limit of memory.
+
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+use std::sync::{Arc, Mutex, PoisonError};
+
+pub mod equirect;
+mod file;
+mod filter;
+pub mod map;
+pub mod pack;
+pub mod sky;
+
+use map::Detail;
+pub use map::EnvironmentMap;
+
+use super::folder;
+use super::textures::TextureError;
+use crate::base::cache::Cache;
+use crate::base::hash::content_hash;
+
+/// Memory for prepared surroundings: about 30 of them.
+const LIMIT_BYTES: usize = 256 << 20;
+/// In front of the names of those that are part of the program.
+const BUILT_IN: &str = "hdri/";
+
+/// All surroundings by id. Shared by reference between threads; ids do not change over its life.
+#[derive(Debug)]
+pub struct Environments {
+    ids: Vec<String>,
+    paths: BTreeMap<String, PathBuf>,
+    cache: Cache<String, EnvironmentMap>,
+    /// Content hashes of files that were read, as 64 hexadecimal digits.
+    hashes: Mutex<BTreeMap<String, String>>,
+}
+
+impl Environments {
+    /// Those of the program, and the .hdr and .exr files below some folders, not opened.
+    ///
+    /// # Errors
+    /// When a folder is missing, is none, cannot be read, or holds nothing of use.
+    pub fn new(folders: &[PathBuf]) -> Result<Self, TextureError> {
+        let mut paths = folder::named(folders)?;
+        paths.retain(|id, _| folder::is_environment(id));
+        let mut ids: Vec<String> =
+            pack::built_in().iter().map(|p| format!("{BUILT_IN}{}", p.name)).collect();
+        ids.extend(paths.keys().cloned());
+        ids.sort();
+        Ok(Self { ids, paths, cache: Cache::new(LIMIT_BYTES), hashes: Mutex::default() })
+    }
+
+    /// All ids, in order.
+    #[must_use]
+    pub fn ids(&self) -> &[String] {
+        &self.ids
+    }
+
+    /// The ids of users' files, in order.
+    pub fn file_ids(&self) -> impl Iterator<Item = &String> {
+        self.paths.keys()
+    }
+
+    /// The surroundings of an id.
+    ///
+    /// # Errors
+    /// When there are none of that id, or their file cannot be read or used.
+    pub fn get(&self, id: &str) -> Result<Arc<EnvironmentMap>, TextureError> {
+        self.cache.get_or_make(&id.to_owned(), EnvironmentMap::size_bytes, || {
+            let (picture, path) = if let Some(path) = self.paths.get(id) {
+                let bytes = folder::read(path)?;
+                self.hashes
+                    .lock()
+                    .unwrap_or_else(PoisonError::into_inner)
+                    .insert(id.to_owned(), content_hash(&bytes));
+                (file::decode(path, &bytes)?, path.clone())
+            } else {
+                let all = pack::built_in();
+                let named = |p: &&pack::Packed| id.strip_prefix(BUILT_IN) == Some(p.name);
+                let packed = all.iter().find(named).ok_or_else(|| self.unknown(id))?;
+                let path = PathBuf::from("assets/environments.env");
+                let damaged = || TextureError::Broken {
+                    path: path.clone(),
+                    what: format!("{id} is damaged"),
+                };
+                (packed.picture().ok_or_else(damaged)?, path)
+            };
+            EnvironmentMap::new(picture, Detail::PICTURE)
+                .ok_or_else(|| TextureError::Broken { path, what: "it is all black".to_owned() })
+        })
+    }
+
+    /// The BLAKE3 hash of a user's file, once it was read.
+    #[must_use]
+    pub fn content_hash(&self, id: &str) -> Option<String> {
+        self.hashes.lock().unwrap_or_else(PoisonError::into_inner).get(id).cloned()
+    }
+
+    fn unknown(&self, id: &str) -> TextureError {
+        let score = |known: &&String| strsim::jaro_winkler(id, known);
+        let best = self.ids.iter().max_by(|a, b| score(a).total_cmp(&score(b)));
+        let nearest = best.filter(|known| score(known) > 0.7).cloned();
+        TextureError::UnknownEnvironment { id: id.to_owned(), nearest }
+    }
+}
