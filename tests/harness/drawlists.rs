@@ -2,12 +2,13 @@
 
 use std::sync::Arc;
 
+use figurant_core::base::lens::{Lens, LensError, LensGrid};
 use figurant_core::draw::DrawList;
 use figurant_core::draw::abi::{
     ColorGrade, Draw, DrawObject, Grade, Lights, Material, ToneCurve, View,
 };
 use figurant_core::library::mesh::Mesh;
-use glam::{DAffine3, DMat3, DQuat, DVec3};
+use glam::{DAffine3, DMat3, DQuat, DVec2, DVec3};
 
 use crate::meshes::{self, Dice};
 
@@ -100,6 +101,31 @@ pub fn any_grade(dice: &mut Dice) -> Grade {
         tone_curve: [ToneCurve::Aces, ToneCurve::Agx, ToneCurve::None][dice.below(3)],
         grain: if dice.unit() < 0.5 { 0.0 } else { 0.03 },
         grain_key: dice.below(1 << 30) as u32,
+    }
+}
+
+/// Puts a lens before the pinhole of a draw list; says whether a picture can be taken through it.
+pub fn put_lens(list: &mut DrawList, lens: Lens) -> Result<(), LensError> {
+    let view = &list.view;
+    let [fx, fy, cx, cy] = [view.fx, view.fy, view.cx, view.cy].map(f64::from);
+    let size_px = [view.width, view.height];
+    let grid = LensGrid::new(lens, DVec2::new(fx, fy), DVec2::new(cx, cy), size_px)?;
+    list.lens = Some(Arc::new(grid));
+    Ok(())
+}
+
+/// A barrel or a cushion with all five coefficients, or a fisheye, that a picture can be taken
+/// through.
+pub fn any_lens(dice: &mut Dice, list: &mut DrawList) {
+    loop {
+        let mut k = |limit: f64| dice.range(-limit, limit);
+        let lens = match k(1.0) < 0.0 {
+            true => Lens::Brown { k1: k(0.35), k2: k(0.1), p1: k(0.02), p2: k(0.02), k3: k(0.02) },
+            false => Lens::Fisheye { k1: k(0.1), k2: k(0.03), k3: k(0.01), k4: k(0.003) },
+        };
+        if put_lens(list, lens).is_ok() {
+            return;
+        }
     }
 }
 
