@@ -119,9 +119,10 @@ pub fn put_lens(list: &mut DrawList, lens: Lens) -> Result<(), LensError> {
 pub fn any_lens(dice: &mut Dice, list: &mut DrawList) {
     loop {
         let mut k = |limit: f64| dice.range(-limit, limit);
-        let lens = match k(1.0) < 0.0 {
-            true => Lens::Brown { k1: k(0.35), k2: k(0.1), p1: k(0.02), p2: k(0.02), k3: k(0.02) },
-            false => Lens::Fisheye { k1: k(0.1), k2: k(0.03), k3: k(0.01), k4: k(0.003) },
+        let lens = if k(1.0) < 0.0 {
+            Lens::Brown { k1: k(0.35), k2: k(0.1), p1: k(0.02), p2: k(0.02), k3: k(0.02) }
+        } else {
+            Lens::Fisheye { k1: k(0.1), k2: k(0.03), k3: k(0.01), k4: k(0.003) }
         };
         if put_lens(list, lens).is_ok() {
             return;

@@ -14,16 +14,14 @@ use super::simd::{F32x8, I32x8, LANES, Mask8, kernel};
 const BOUND: i64 = 1 << 30;
 
 kernel! {
-    /// Rasters the triangles that touch a tile into its samples, which are overwritten. `touching`
-    /// names the chunks that hold any.
+    /// Rasters the triangles that touch a tile into its samples, which are overwritten: depths, ids
+    /// and the farthest depth of each block. `touching` names the chunks that hold any.
     fn raster_lens_tile[const S: usize](
         chunks: &[Chunk],
         touching: &[u32],
         tile: [u32; 2],
         lens: &LensTile,
-        depth: &mut [f32],
-        ids: &mut [u32],
-        farthest: &mut [f32],
+        samples: (&mut [f32], &mut [u32], &mut [f32]),
     ) = raster_body
 }
 
@@ -33,9 +31,7 @@ fn raster_body<const AVX2: bool, const S: usize>(
     touching: &[u32],
     tile: [u32; 2],
     lens: &LensTile,
-    depth: &mut [f32],
-    ids: &mut [u32],
-    farthest: &mut [f32],
+    (depth, ids, farthest): (&mut [f32], &mut [u32], &mut [f32]),
 ) {
     depth.fill(0.0);
     farthest.fill(0.0);

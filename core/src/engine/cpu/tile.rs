@@ -197,15 +197,16 @@ impl TilePass<'_> {
     }
 
     fn raster<const S: usize>(&self, tile: [u32; 2], lens: Option<&LensTile>, s: &mut Scratch) {
-        let (chunks, touching) = (self.chunks, self.by_tile.of(tile));
-        let (depth, ids, farthest) = (&mut s.depth, &mut s.ids, &mut s.farthest);
+        let (level, chunks, touching) = (self.level, self.chunks, self.by_tile.of(tile));
+        let (depth, ids, farthest) = (&mut s.depth[..], &mut s.ids[..], &mut s.farthest[..]);
         match lens {
-            Some(lens) => raster_lens_tile::<S>(
-                self.level, chunks, touching, tile, lens, depth, ids, farthest,
-            ),
-            None => raster_tile::<S, true, TILE>(
-                self.level, chunks, touching, tile, depth, ids, farthest,
-            ),
+            Some(lens) => {
+                let samples = (depth, ids, farthest);
+                raster_lens_tile::<S>(level, chunks, touching, tile, lens, samples);
+            }
+            None => {
+                raster_tile::<S, true, TILE>(level, chunks, touching, tile, depth, ids, farthest)
+            }
         }
     }
 
