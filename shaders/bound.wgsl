@@ -42,7 +42,8 @@ fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index
     let none = vec3<u32>(0u);
     var every = Keys(none, none, 0u);
     var seen = every;
-    let end = vec2<i32>(frame.size) << vec2<u32>(16u);
+    let size = vec2<u32>(raster_target.width, raster_target.height);
+    let end = vec2<i32>(size) << vec2<u32>(16u);
     for (var i = lane; i < batch.count; i += 32u) {
         let position = vertices[batch.first + i].position;
         let at = vec2<i32>(screen[batch.first + i].x, screen[batch.first + i].y);

@@ -34,7 +34,8 @@ fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index
     if whole.shows && !crosses {
         append(whole.primitive);
     }
-    let end = vec2<i32>(frame.size) << vec2<u32>(16u);
+    let size = vec2<u32>(raster_target.width, raster_target.height);
+    let end = vec2<i32>(size) << vec2<u32>(16u);
     let over = least(x) < 0 || least(y) < 0 || most(x) > end.x || most(y) > end.y;
     let bounds_receivers = frame.has_shadow != 0u && (crosses || (over && whole.shows));
     if crosses || bounds_receivers {

@@ -52,6 +52,7 @@ impl FrameMaker for Painter {
             position_m: DVec3::new(0.0, 0.0, 5.0),
             rotation: DQuat::IDENTITY,
             near_m: 0.1,
+            distortion: None,
         };
         let inside =
             |i: u32| (i % width) >= width / 4 && (i % width) < width / 2 && i / width >= height / 4;

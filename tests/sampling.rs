@@ -1,7 +1,9 @@
 //! Document to scene: what seeds, frames and switches mean across all sections.
 
+use figurant_core::base::lens::Lens;
 use figurant_core::document::{
-    Auto, Choice, Document, OutfitRow, Param, Problem, Season, file, presets,
+    Auto, Brown, Choice, Distortion, Document, Fisheye, OutfitRow, Param, Problem, Season, file,
+    presets,
 };
 use figurant_core::library::pose::Poses;
 use figurant_core::library::textures::{TextureGroup, TextureLibrary};
@@ -287,6 +289,43 @@ fn the_starter_shows_six_people_of_readable_size() {
             assert!((-20.0..660.0).contains(&feet.x), "frame {frame}: {feet}");
         }
     }
+}
+
+#[test]
+fn a_lens_moves_nothing_else_and_one_of_zeros_is_none() {
+    let without = preset("peoplesanspeople");
+    let with = |distortion| {
+        let mut document = without.clone();
+        document.camera.distortion = Some(distortion);
+        document
+    };
+    let zeros = with(Distortion::Brown(Brown::default()));
+    let barrels = with(Distortion::Brown(Brown {
+        k1: Param::uniform(-0.3, -0.1),
+        k3: Param::uniform(0.0, 0.01),
+        ..Brown::default()
+    }));
+    let fisheye = with(Distortion::Fisheye(Fisheye::default()));
+    let mut seen = Vec::new();
+    for frame in 0..20 {
+        let plain = scene(&without, frame);
+        assert_eq!(scene(&zeros, frame), plain);
+        let mut bent = scene(&barrels, frame);
+        let Some(Lens::Brown { k1, k2, k3, .. }) = bent.camera.distortion.take() else {
+            panic!("frame {frame} has no barrel");
+        };
+        assert_eq!(bent, plain);
+        assert!((-0.3..-0.1).contains(&k1) && k2 == 0.0 && (0.0..0.01).contains(&k3));
+        seen.push((k1, k3));
+        // A fisheye of zeros is not a pinhole.
+        let none = Lens::Fisheye { k1: 0.0, k2: 0.0, k3: 0.0, k4: 0.0 };
+        assert_eq!(scene(&fisheye, frame).camera.distortion, Some(none));
+    }
+    assert!(seen.windows(2).all(|w| w[0].0 != w[1].0 && w[0].1 != w[1].1), "{seen:?}");
+    let text = serde_json::to_string(&scene(&without, 0)).unwrap();
+    assert!(!text.contains("distortion"), "scenes without a lens are written as ever");
+    let text = serde_json::to_string(&scene(&barrels, 0)).unwrap();
+    assert_eq!(serde_json::from_str::<Scene>(&text).unwrap(), scene(&barrels, 0));
 }
 
 #[test]

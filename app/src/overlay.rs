@@ -271,6 +271,7 @@ mod tests {
                 k: [[0.0; 3]; 3],
                 r: [[0.0; 3]; 3],
                 t: [0.0; 3],
+                distortion_model: None,
                 distortion: vec![],
             },
             people: vec![PersonLabel {

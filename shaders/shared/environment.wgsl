@@ -105,6 +105,6 @@ fn backdrop(at: vec2<f32>) -> vec3<f32> {
     if frame.has_environment == 0u {
         return frame.background;
     }
-    let ray = vec3<f32>((at - frame.center) * vec2<f32>(1.0, -1.0) / frame.focal, -1.0);
-    return environment_bilinear(environment_uv(ray), 0u) * frame.environment_unit;
+    let direction = vec3<f32>(ray_through(at).xy, -1.0);
+    return environment_bilinear(environment_uv(direction), 0u) * frame.environment_unit;
 }

@@ -1,32 +1,5 @@
-// Raster: depth, and which primitive, of the samples of one tile.
-//
-// Coverage by exact integer edge functions with the top-left rule; the nearest sample wins, of
-// equals the earlier drawn, so that the order of the lists does not matter. An invocation owns
-// PIXELS pixels of the tile of 64, so that a primitive is read by few of them. Needs raster_target,
-// primitives, tiles, lists and counters.
-
-// Invocations of a tile.
-const LANES: u32 = 64u / PIXELS;
-const KEPT: u32 = PIXELS * SAMPLES;
-
-var<private> best_depth: array<f32, KEPT>;
-var<private> best_order: array<u32, KEPT>;
-var<private> best_slot: array<u32, KEPT>;
-
-// A pixel of an invocation, from the tile's corner.
-fn pixel_of(lane: u32, k: u32) -> vec2<i32> {
-    let index = lane + k * LANES;
-    return vec2<i32>(i32(index & 7u), i32(index >> 3u));
-}
-
-fn keep(at: u32, depth: f32, order: u32, slot: u32) {
-    let wins = depth > best_depth[at] || (depth == best_depth[at] && order < best_order[at]);
-    if wins && depth > 0.0 {
-        best_depth[at] = depth;
-        best_order[at] = order;
-        best_slot[at] = slot;
-    }
-}
+// Raster: depth, and which primitive, of the samples of one tile, by exact integer edge functions with
+// the top-left rule. Needs raster_target, primitives, tiles, lists and counters.
 
 // By how much edge functions without their last digits are too small at most: a unit for each of
 // 127 steps to the right and down, and one for the start.
@@ -115,11 +88,7 @@ fn raster_small(slot: u32, lane: u32, x: vec3<i32>, y: vec3<i32>) {
 // Rasters everything that touches a tile: small primitives, then those of its list of others and
 // those that all tiles look at.
 fn raster_tile(tile: vec2<u32>, lane: u32) {
-    for (var i = 0u; i < KEPT; i++) {
-        best_depth[i] = 0.0;
-        best_order[i] = NOTHING;
-        best_slot[i] = NOTHING;
-    }
+    forget();
     let corner = vec2<i32>(tile << vec2<u32>(TILE_LOG2)) + vec2<i32>(0, i32(raster_target.first_y));
     // The first sample of a grid that goes on over the tile, raster units.
     let origin = (corner << vec2<u32>(10u)) + GRID_CORNER * 64;

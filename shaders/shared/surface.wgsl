@@ -28,8 +28,8 @@ fn clamp_to_triangle(raw: vec2<f32>) -> vec2<f32> {
 }
 
 fn surface_point(corners: vec3<u32>, at: vec2<f32>, flags: u32) -> SurfacePoint {
-    let step = vec2<f32>(1.0, -1.0) / frame.focal;
-    let ray = vec3<f32>((at - frame.center) * step, -1.0);
+    let through = ray_through(at);
+    let ray = vec3<f32>(through.xy, -1.0);
     let a = vertices[corners.x];
     let b = vertices[corners.y];
     let c = vertices[corners.z];
@@ -51,8 +51,8 @@ fn surface_point(corners: vec3<u32>, at: vec2<f32>, flags: u32) -> SurfacePoint 
     let uv2 = vec2<f32>(c.u - a.u, c.v - a.v);
     // Numerators and determinant of the weights are linear in the ray.
     let base = cross(edge2, edge1);
-    let change1 = (cross(a.position, edge2).xy - raw.x * base.xy) * inverse * step;
-    let change2 = (cross(edge1, a.position).xy - raw.y * base.xy) * inverse * step;
+    let change1 = over_pixel(through, (cross(a.position, edge2).xy - raw.x * base.xy) * inverse);
+    let change2 = over_pixel(through, (cross(edge1, a.position).xy - raw.y * base.xy) * inverse);
     // Solves edge_k = u_k tangent + v_k bitangent but for the length.
     let sign = select(-1.0, 1.0, uv1.x * uv2.y - uv1.y * uv2.x >= 0.0);
 

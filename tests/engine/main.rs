@@ -4,5 +4,6 @@
 
 mod common;
 mod labels;
+mod lens;
 mod limits;
 mod picture;

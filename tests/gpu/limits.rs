@@ -1,11 +1,12 @@
 //! Odd sizes, wrong numbers, small limits and a device that goes away.
 
+use figurant_core::base::lens::Lens;
 use figurant_core::draw::DrawList;
 use figurant_core::engine::gpu::{GpuEngine, GpuError, GpuOptions};
 use figurant_core::engine::{Engine, EngineError};
 use figurant_core::plan::{Output, StageTimes};
 use figurant_tests::crowd::crowd;
-use figurant_tests::drawlists::{add, empty, mixed, view};
+use figurant_tests::drawlists::{add, empty, mixed, put_lens, view};
 use figurant_tests::meshes;
 use glam::{DAffine3, DVec3};
 use std::sync::Arc;
@@ -75,6 +76,23 @@ fn the_largest_picture_has_its_edges_in_place() {
     let ids = frame.object_ids.unwrap();
     for (x, y, id) in [(999, 5000, 0), (1000, 5000, 1), (7191, 1000, 1), (4096, 7192, 0)] {
         assert_eq!(ids[y * 8192 + x], id, "{x},{y}");
+    }
+}
+
+/// A band's tables take the places of those of the band before, and of another frame.
+#[test]
+fn a_lens_in_bands_shows_what_it_shows_at_once() {
+    let Some(options) = options() else { return };
+    let mut engine = GpuEngine::new(GpuOptions { minimum_limits: true, ..options }).unwrap();
+    let mut list = empty(view(3000, 2600, 2600.0), 4);
+    with_square(&mut list, 6.0, 8.0);
+    let barrel = Lens::Brown { k1: -0.2, k2: 0.03, p1: 0.001, p2: 0.0, k3: 0.0 };
+    put_lens(&mut list, barrel).unwrap();
+    for _ in 0..2 {
+        let outputs = &[Output::Box2d, Output::Instance];
+        let (cpu, gpu) = (by_cpu(&list, outputs), by_gpu(&mut engine, &list, outputs));
+        assert!(cpu.object_ids == gpu.object_ids);
+        assert_eq!(cpu.object_samples, gpu.object_samples);
     }
 }
 

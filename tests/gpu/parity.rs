@@ -1,12 +1,13 @@
 //! Both engines show the same: ids, distances, counts, colours, and labels made of them.
 
+use figurant_core::base::lens::Lens;
 use figurant_core::document::presets;
 use figurant_core::draw::DrawList;
 use figurant_core::draw::abi::{PointLight, Sun};
 use figurant_core::label;
 use figurant_core::library::texture::{Encoding, Texture, color_from_srgb8};
 use figurant_core::plan::{Output, Outputs};
-use figurant_tests::drawlists::{any_grade, any_surroundings, mixed};
+use figurant_tests::drawlists::{any_grade, any_lens, any_surroundings, mixed};
 use figurant_tests::meshes::Dice;
 use std::sync::Arc;
 
@@ -125,6 +126,51 @@ fn every_preset_agrees() {
         let one = compare(preset.name, list, &cpu, &gpu);
         println!("{}: {one:?}", preset.name);
         all.add(&one);
+    }
+    check(&all);
+}
+
+fn hard_scenes_through_lenses(samples: u32, seeds: std::ops::Range<u64>) {
+    let Some(mut engine) = engine() else { return };
+    let mut all = Difference::default();
+    for seed in seeds {
+        let mut list = lit(seed, samples);
+        any_lens(&mut Dice::new(seed + 3), &mut list);
+        let (cpu, gpu) = (by_cpu(&list, LABELS), by_gpu(&mut engine, &list, LABELS));
+        all.add(&compare(&format!("scene {seed}, {samples} samples"), &list, &cpu, &gpu));
+    }
+    println!("{all:?}");
+    assert!(all.ids * 20 < all.pixels, "{} of {} pixels differ", all.ids, all.pixels);
+}
+
+#[test]
+fn hard_scenes_through_lenses_agree_with_one_sample() {
+    hard_scenes_through_lenses(1, 1000..1020);
+}
+
+#[test]
+fn hard_scenes_through_lenses_agree_with_more_samples() {
+    hard_scenes_through_lenses(4, 1120..1128);
+    hard_scenes_through_lenses(16, 1200..1203);
+}
+
+/// Pictures and labels of sampled scenes through a barrel, a cushion and a fisheye.
+#[test]
+fn sampled_scenes_through_lenses_agree() {
+    let Some(mut engine) = engine() else { return };
+    let source = Source::new();
+    let mut all = Difference::default();
+    let lenses = [
+        Lens::Brown { k1: -0.25, k2: 0.06, p1: 0.002, p2: -0.001, k3: 0.0 },
+        Lens::Brown { k1: 0.2, k2: 0.05, p1: 0.0, p2: 0.003, k3: 0.0 },
+        Lens::Fisheye { k1: -0.02, k2: 0.005, k3: 0.0, k4: 0.0 },
+    ];
+    for frame in 0..12 {
+        let lens = lenses[frame as usize % lenses.len()];
+        let (_, drawn) = source.drawn_through("peoplesanspeople", frame, 128, 4, Some(lens));
+        let list = &drawn.list;
+        let (cpu, gpu) = (by_cpu(list, &Output::ALL), by_gpu(&mut engine, list, &Output::ALL));
+        all.add(&compare(&format!("frame {frame}, {lens:?}"), list, &cpu, &gpu));
     }
     check(&all);
 }

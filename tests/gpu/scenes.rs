@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use figurant_core::base::lens::Lens;
 use figurant_core::document::{file, presets};
 use figurant_core::draw::{Cast, DrawOptions, Drawn, draw};
 use figurant_core::job::catalogue;
@@ -22,10 +23,23 @@ impl Source {
 
     /// A frame of a preset in a picture of this size.
     pub fn drawn(&self, preset: &str, frame: u32, size: u32, samples: u32) -> (Scene, Drawn) {
+        self.drawn_through(preset, frame, size, samples, None)
+    }
+
+    /// As [`Self::drawn`], through a lens.
+    pub fn drawn_through(
+        &self,
+        preset: &str,
+        frame: u32,
+        size: u32,
+        samples: u32,
+        lens: Option<Lens>,
+    ) -> (Scene, Drawn) {
         let mut document = file::parse(presets::find(preset).unwrap().text).unwrap();
         (document.image.width, document.image.height) = (size, size);
         let sampler = Sampler::new(Arc::new(document), catalogue(&self.library)).unwrap();
-        let scene = sampler.scene(frame);
+        let mut scene = sampler.scene(frame);
+        scene.camera.distortion = lens;
         let options = DrawOptions {
             raster: true,
             shading: true,

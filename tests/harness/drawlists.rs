@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use figurant_core::base::lens::{Lens, LensError, LensGrid};
 use figurant_core::draw::DrawList;
 use figurant_core::draw::abi::{
     ColorGrade, Draw, DrawObject, Grade, Lights, Material, Surroundings, ToneCurve, View,
@@ -10,7 +11,7 @@ use figurant_core::library::environment::EnvironmentMap;
 use figurant_core::library::environment::equirect::Equirect;
 use figurant_core::library::environment::map::Detail;
 use figurant_core::library::mesh::Mesh;
-use glam::{DAffine3, DMat3, DQuat, DVec3};
+use glam::{DAffine3, DMat3, DQuat, DVec2, DVec3};
 
 use crate::meshes::{self, Dice};
 
@@ -116,6 +117,32 @@ pub fn any_surroundings(dice: &mut Dice) -> Surroundings {
     let map = EnvironmentMap::new(Equirect::from_fn(128, light), Detail::COMPUTED);
     let turn = DMat3::from_axis_angle(dice.direction(), dice.range(0.0, 6.0));
     Surroundings::new(Arc::new(map.unwrap()), turn, dice.range(0.1, 0.5))
+}
+
+/// Puts a lens before the pinhole of a draw list; says whether a picture can be taken through it.
+pub fn put_lens(list: &mut DrawList, lens: Lens) -> Result<(), LensError> {
+    let view = &list.view;
+    let [fx, fy, cx, cy] = [view.fx, view.fy, view.cx, view.cy].map(f64::from);
+    let size_px = [view.width, view.height];
+    let grid = LensGrid::new(lens, DVec2::new(fx, fy), DVec2::new(cx, cy), size_px)?;
+    list.lens = Some(Arc::new(grid));
+    Ok(())
+}
+
+/// A barrel or a cushion with all five coefficients, or a fisheye, that a picture can be taken
+/// through.
+pub fn any_lens(dice: &mut Dice, list: &mut DrawList) {
+    loop {
+        let mut k = |limit: f64| dice.range(-limit, limit);
+        let lens = if k(1.0) < 0.0 {
+            Lens::Brown { k1: k(0.35), k2: k(0.1), p1: k(0.02), p2: k(0.02), k3: k(0.02) }
+        } else {
+            Lens::Fisheye { k1: k(0.1), k2: k(0.03), k3: k(0.01), k4: k(0.003) }
+        };
+        if put_lens(list, lens).is_ok() {
+            return;
+        }
+    }
 }
 
 /// Scale, then a random rotation, then a position.

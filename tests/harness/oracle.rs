@@ -5,6 +5,7 @@
 //! way is reported as doubt: an edge within [`EDGE_PX`] of the sample, or two surfaces at nearly
 //! the same depth.
 
+use figurant_core::base::lens::Lens;
 use figurant_core::draw::DrawList;
 use figurant_core::draw::abi::{DrawObject, Material, Surroundings, View};
 use figurant_core::library::environment::map::LEVELS;
@@ -12,6 +13,8 @@ use glam::{DMat3, DVec2, DVec3};
 
 /// Edges closer to a sample than this leave it in doubt, pixels.
 pub const EDGE_PX: f64 = 1e-3;
+/// The same behind a lens, where samples are rounded as vertices are.
+pub const LENS_EDGE_PX: f64 = 2e-3;
 /// Surfaces closer to each other than this, relative to their depth, leave a sample in doubt.
 const SAME_DEPTH: f64 = 2e-5;
 
@@ -61,6 +64,8 @@ pub struct Sample {
 /// A draw list as triangles in view space.
 pub struct Oracle {
     view: View,
+    lens: Option<Lens>,
+    edge_px: f64,
     triangles: Vec<Triangle>,
 }
 
@@ -123,17 +128,23 @@ impl Oracle {
                 });
             }
         }
-        Self { view: list.view, triangles }
+        let lens = list.lens.as_ref().map(|grid| *grid.lens());
+        let edge_px = if lens.is_some() { LENS_EDGE_PX } else { EDGE_PX };
+        Self { view: list.view, lens, edge_px, triangles }
     }
 
     /// The ray through a point of the picture, with z = -1.
     fn ray(&self, x: f64, y: f64) -> DVec3 {
         let v = &self.view;
-        DVec3::new(
-            (x - f64::from(v.cx)) / f64::from(v.fx),
-            (f64::from(v.cy) - y) / f64::from(v.fy),
-            -1.0,
-        )
+        let right = (x - f64::from(v.cx)) / f64::from(v.fx);
+        let down = (y - f64::from(v.cy)) / f64::from(v.fy);
+        match self.lens {
+            None => DVec3::new(right, -down, -1.0),
+            Some(lens) => {
+                let p = undistorted(lens, DVec2::new(right, down));
+                DVec3::new(p.x, -p.y, -1.0)
+            }
+        }
     }
 
     /// How far inside each edge of a triangle a point lies, pixels; the smallest of the three.
@@ -170,21 +181,21 @@ impl Oracle {
             let margin = self.margin_px(t, ray, if offset < 0.0 { 1.0 } else { -1.0 });
             // The near plane cuts the triangle along an edge of its own.
             let at_near_plane =
-                (depth - 1.0).abs() < 1e-6 + EDGE_PX * self.slope_per_px(normal, offset);
-            if margin > EDGE_PX && !at_near_plane {
+                (depth - 1.0).abs() < 1e-6 + self.edge_px * self.slope_per_px(normal, offset);
+            if margin > self.edge_px && !at_near_plane {
                 if best.is_none_or(|(_, d)| depth > d) {
                     second = best.map_or(second, |(_, d)| d.max(second));
                     best = Some((index, depth));
                 } else {
                     second = second.max(depth);
                 }
-            } else if margin > -EDGE_PX {
+            } else if margin > -self.edge_px {
                 doubtful = doubtful.max(depth);
             }
         }
         let nearest = best.map_or(0.0, |(_, d)| d) * (1.0 - SAME_DEPTH);
         let hit = best.map(|(index, depth)| self.hit(index, ray, depth));
-        let steep = hit.map_or(0.0, |h| h.slope_per_px) * EDGE_PX;
+        let steep = hit.map_or(0.0, |h| h.slope_per_px) * self.edge_px;
         let doubt = doubtful > nearest - steep || (hit.is_some() && second > nearest - steep);
         Sample { hit, doubt: doubt && (doubtful > 0.0 || second > 0.0) }
     }
@@ -217,6 +228,45 @@ impl Oracle {
             normal: (t.n[0] * w[0] + t.n[1] * w[1] + t.n[2] * w[2]).normalize() * turned,
             barycentric: w,
             uv: t.uv[0] * w[0] + t.uv[1] * w[1] + t.uv[2] * w[2],
+        }
+    }
+}
+
+/// The way back through a lens, by other means than the engines': OpenCV's fixed-point iteration for
+/// Brown's model, bisection for the fisheye's angle.
+fn undistorted(lens: Lens, distorted: DVec2) -> DVec2 {
+    match lens {
+        Lens::Brown { k1, k2, p1, p2, k3 } => {
+            let mut p = distorted;
+            for _ in 0..400 {
+                let r2 = p.length_squared();
+                let radial = 1.0 + k1 * r2 + k2 * r2.powi(2) + k3 * r2.powi(3);
+                let tangential = DVec2::new(
+                    2.0 * p1 * p.x * p.y + p2 * (r2 + 2.0 * p.x * p.x),
+                    p1 * (r2 + 2.0 * p.y * p.y) + 2.0 * p2 * p.x * p.y,
+                );
+                let next = (distorted - tangential) / radial;
+                if next.distance(p) < 1e-13 {
+                    return next;
+                }
+                // Half of the way, which swings about the end less.
+                p = (p + next) * 0.5;
+            }
+            panic!("no way back from {distorted} through {lens:?}");
+        }
+        Lens::Fisheye { k1, k2, k3, k4 } => {
+            let radius = distorted.length();
+            if radius == 0.0 {
+                return distorted;
+            }
+            let (mut low, mut high) = (0.0, 1.5);
+            for _ in 0..80 {
+                let angle: f64 = 0.5 * (low + high);
+                let a2 = angle * angle;
+                let shown = angle * (1.0 + a2 * (k1 + a2 * (k2 + a2 * (k3 + a2 * k4))));
+                if shown < radius { low = angle } else { high = angle }
+            }
+            distorted * (f64::tan(low) / radius)
         }
     }
 }

@@ -119,6 +119,7 @@ mod tests {
             position_m: flight.viewpoint.position_m,
             rotation: flight.viewpoint.rotation,
             near_m: 0.1,
+            distortion: None,
         };
         let at = camera.project(camera.view_from_world(before)).unwrap();
         assert!((at.x - 50.0).abs() < 1e-6 && (at.y - 100.0).abs() < 1e-6, "{at}");

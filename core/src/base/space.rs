@@ -9,7 +9,8 @@
 //!   `x_cv = (x, -y, -z)_view` ([`cv_from_view`]).
 //! * **Image**: continuous pixels, origin at the top-left *corner* of the top-left pixel, x right,
 //!   y down. Pixel (i, j) covers `[i, i+1) x [j, j+1)`; its centre is (i + 0.5, j + 0.5).
-//! * **Intrinsics**: `K = [[fx, 0, W/2], [0, fy, H/2], [0, 0, 1]]`, `x = K (R X + t)`.
+//! * **Intrinsics**: `K = [[fx, 0, W/2], [0, fy, H/2], [0, 0, 1]]`, `x = K (R X + t)`; through a lens
+//!   ([`super::lens`]) `x = K distort(R X + t)`.
 //! * **Depth** in an engine: reversed Z with an infinite far plane, `near / distance`, where
 //!   distance is metres along the view axis; 1 at the near plane, 0 at infinity and where nothing is.
 //! * **Angles**: radians inside; degrees in the document, in names that end in `_deg`.

@@ -27,7 +27,7 @@ impl Default for Image {
 pub struct Camera {
     /// Where false, every parameter takes its median.
     pub enabled: bool,
-    /// Angle between the rays through the middle of the top and bottom edge.
+    /// Angle between the rays through the middle of the top and bottom edge, without the distortion.
     pub fov_vertical_deg: Param,
     /// Where it stands.
     pub position_m: Vector,
@@ -39,6 +39,9 @@ pub struct Camera {
     pub rotation_offset_deg: [Param; 3],
     /// Nothing nearer along the view axis is seen.
     pub near_m: f64,
+    /// What its lens makes of the pinhole's picture, in OpenCV's terms; nothing where absent.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub distortion: Option<Distortion>,
 }
 
 impl Default for Camera {
@@ -52,6 +55,77 @@ impl Default for Camera {
             rotation_deg: Rotation::NONE,
             rotation_offset_deg: [five(), five(), five()],
             near_m: 0.1,
+            distortion: None,
         }
+    }
+}
+
+/// How a lens bends straight lines. Lengths are fractions of the focal length.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(tag = "model", rename_all = "snake_case")]
+pub enum Distortion {
+    /// Radial and tangential, as `cv2.projectPoints`; with zeros alone there is none.
+    Brown(Brown),
+    /// By the angle off the axis, as `cv2.fisheye`: a picture reaches 80 degrees off it at most. With
+    /// zeros alone it is the equidistant fisheye.
+    Fisheye(Fisheye),
+}
+
+/// Coefficients of Brown's model.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+pub struct Brown {
+    /// Radial, of the radius squared; barrels are negative.
+    pub k1: Param,
+    /// Radial, of the fourth power.
+    pub k2: Param,
+    /// Tangential, for a sensor tilted about x.
+    pub p1: Param,
+    /// Tangential, for a sensor tilted about y.
+    pub p2: Param,
+    /// Radial, of the sixth power.
+    pub k3: Param,
+}
+
+/// Coefficients of the fisheye: `angle (1 + k1 angle^2 + k2 angle^4 + k3 angle^6 + k4 angle^8)`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+pub struct Fisheye {
+    /// See [`Fisheye`].
+    pub k1: Param,
+    /// See [`Fisheye`].
+    pub k2: Param,
+    /// See [`Fisheye`].
+    pub k3: Param,
+    /// See [`Fisheye`].
+    pub k4: Param,
+}
+
+impl Distortion {
+    /// All coefficients with their names, in the order of their fields.
+    #[must_use]
+    pub fn coefficients(&self) -> Vec<(&'static str, &Param)> {
+        match self {
+            Self::Brown(Brown { k1, k2, p1, p2, k3 }) => {
+                vec![("k1", k1), ("k2", k2), ("p1", p1), ("p2", p2), ("k3", k3)]
+            }
+            Self::Fisheye(Fisheye { k1, k2, k3, k4 }) => {
+                vec![("k1", k1), ("k2", k2), ("k3", k3), ("k4", k4)]
+            }
+        }
+    }
+}
+
+impl Default for Brown {
+    fn default() -> Self {
+        let none = || Param::Constant(0.0);
+        Self { k1: none(), k2: none(), p1: none(), p2: none(), k3: none() }
+    }
+}
+
+impl Default for Fisheye {
+    fn default() -> Self {
+        let none = || Param::Constant(0.0);
+        Self { k1: none(), k2: none(), k3: none(), k4: none() }
     }
 }

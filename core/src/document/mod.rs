@@ -31,7 +31,7 @@ mod validate;
 mod vector;
 mod wardrobe;
 
-pub use camera::{Camera, Image};
+pub use camera::{Brown, Camera, Distortion, Fisheye, Image};
 pub use face::{Expression, ExpressionKind};
 pub use lights::{
     Clock, Environment, Lights, MovingLight, PointLight, Sun, SunAngles, SunDirection,

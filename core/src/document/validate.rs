@@ -28,6 +28,7 @@ const MAX_FRAMES: u32 = 100_000_000;
 const POSITION: Range = Range::from_to(-1e7, 1e7);
 const ANGLE: Range = Range::from_to(-3600.0, 3600.0);
 const SHARE: Range = Range::from_to(0.0, 1.0);
+const COEFFICIENT: Range = Range::from_to(-1e3, 1e3);
 const LENGTH: Range = Range::above(0.0, 1e5);
 const AGE_YEARS: Range = Range::from_to(1.0, 90.0);
 const STATURE_M: Range = Range::from_to(0.4, 2.6);
@@ -80,6 +81,13 @@ fn camera(c: &mut Check, camera: &Camera) {
     c.rotation("camera.rotation_deg", &camera.rotation_deg);
     c.axes("camera.rotation_offset_deg", &camera.rotation_offset_deg, ANGLE);
     c.number("camera.near_m", camera.near_m, Range::from_to(1e-4, 1e3));
+    if let Some(distortion) = &camera.distortion {
+        // Whether a picture folds over depends on its size and the field of view, and is found out
+        // frame by frame.
+        for (name, coefficient) in distortion.coefficients() {
+            c.param(&format!("camera.distortion.{name}"), coefficient, COEFFICIENT);
+        }
+    }
 }
 
 fn lights(c: &mut Check, lights: &Lights) {

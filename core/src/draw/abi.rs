@@ -3,6 +3,7 @@
 use std::ops::Range;
 use std::sync::Arc;
 
+use crate::base::lens::LensGrid;
 use crate::library::environment::EnvironmentMap;
 use crate::library::mesh::Mesh;
 use crate::library::texture::Texture;
@@ -35,6 +36,8 @@ pub struct DrawList {
     pub shadow_map_size: u32,
     /// Samples per pixel: 1, 4 or 16.
     pub samples: u32,
+    /// The lens before the pinhole that `view` is: pixels show what the way back through it leads to.
+    pub lens: Option<Arc<LensGrid>>,
 }
 
 /// Picture size and projection: `x = cx + fx * X / -Z`, `y = cy - fy * Y / -Z`, depth `near / -Z`.

@@ -4,6 +4,7 @@
 
 use glam::DVec3;
 
+use crate::base::lens::LensGrid;
 use crate::scene::Camera;
 
 /// A ball of view space.
@@ -29,18 +30,26 @@ pub struct Frustum {
 }
 
 impl Frustum {
-    /// The view of a camera, widened by one pixel on each side for samples and filters.
+    /// The view of a camera through its lens, widened by one pixel on each side for samples and
+    /// filters.
     #[must_use]
-    pub fn new(camera: &Camera) -> Self {
+    pub fn new(camera: &Camera, lens: Option<&LensGrid>) -> Self {
         let (focal, center) = (camera.focal_px(), camera.center_px());
         let (tan_x, tan_y) = ((center.x + 1.0) / focal, (center.y + 1.0) / focal);
+        // Tangents to the left, right, top and bottom.
+        let [left, right, top, bottom] = match lens.map(LensGrid::extent) {
+            None => [tan_x, tan_x, tan_y, tan_y],
+            Some([low, high]) => {
+                [-low.x, high.x, -low.y, high.y].map(|tangent| tangent + 1.0 / focal)
+            }
+        };
         let side = |x: f64, y: f64, tan: f64| (DVec3::new(x, y, -tan).normalize(), 0.0);
         Self {
             planes: [
-                side(1.0, 0.0, tan_x),
-                side(-1.0, 0.0, tan_x),
-                side(0.0, 1.0, tan_y),
-                side(0.0, -1.0, tan_y),
+                side(1.0, 0.0, left),
+                side(-1.0, 0.0, right),
+                side(0.0, 1.0, bottom),
+                side(0.0, -1.0, top),
                 (DVec3::NEG_Z, -camera.near_m),
             ],
         }
@@ -68,14 +77,18 @@ mod tests {
     use super::*;
 
     fn frustum() -> Frustum {
-        Frustum::new(&Camera {
-            width: 100,
-            height: 100,
-            fov_vertical_deg: 90.0,
-            position_m: DVec3::ZERO,
-            rotation: DQuat::IDENTITY,
-            near_m: 0.1,
-        })
+        Frustum::new(
+            &Camera {
+                width: 100,
+                height: 100,
+                fov_vertical_deg: 90.0,
+                position_m: DVec3::ZERO,
+                rotation: DQuat::IDENTITY,
+                near_m: 0.1,
+                distortion: None,
+            },
+            None,
+        )
     }
 
     fn sphere(x: f64, y: f64, z: f64, radius_m: f64) -> Sphere {

@@ -24,11 +24,14 @@ mod objects;
 mod people;
 mod surfaces;
 
-use glam::{DAffine3, DMat3, DVec3};
+use std::sync::Arc;
+
+use glam::{DAffine3, DMat3, DVec2, DVec3};
 
 pub use abi::DrawList;
 pub use cast::Cast;
 
+use crate::base::lens::{LensError, LensGrid};
 use crate::base::space::exposure_from_ev100;
 use crate::library::Library;
 use crate::library::clip::ClipError;
@@ -84,6 +87,9 @@ pub struct DrawOptions {
 /// A scene that cannot be drawn.
 #[derive(Debug, thiserror::Error)]
 pub enum DrawError {
+    /// The camera's lens makes no picture of this size.
+    #[error(transparent)]
+    Lens(#[from] LensError),
     /// A texture that the scene names cannot be had.
     #[error(transparent)]
     Texture(#[from] TextureError),
@@ -111,7 +117,7 @@ pub fn draw(
     cast: &Cast,
     options: &DrawOptions,
 ) -> Result<Drawn, DrawError> {
-    let mut drawing = Drawing::new(scene, library, cast, *options);
+    let mut drawing = Drawing::new(scene, library, cast, *options)?;
     if options.shading {
         drawing.drawn.list.lights = lights::in_view(scene, library, &drawing.view_from_world)?;
     }
@@ -130,6 +136,8 @@ struct Drawing<'a> {
     options: DrawOptions,
     view_from_world: DAffine3,
     frustum: Frustum,
+    /// Focal length where the lens enlarges most, pixels.
+    finest_focal_px: f64,
     /// View space, towards the sun, when its shadows are wanted.
     shadow_direction: Option<DVec3>,
     surfaces: surfaces::Surfaces,
@@ -137,7 +145,13 @@ struct Drawing<'a> {
 }
 
 impl<'a> Drawing<'a> {
-    fn new(scene: &'a Scene, library: &'a Library, cast: &'a Cast, options: DrawOptions) -> Self {
+    fn new(
+        scene: &'a Scene,
+        library: &'a Library,
+        cast: &'a Cast,
+        options: DrawOptions,
+    ) -> Result<Self, LensError> {
+        let lens = lens(&scene.camera)?;
         let view_from_world = view_from_world(&scene.camera);
         let sun = scene.lights.sun.as_ref().filter(|s| s.shadow && options.shading);
         let list = DrawList {
@@ -146,19 +160,21 @@ impl<'a> Drawing<'a> {
             grade: grade::grade(&scene.post),
             shadow_map_size: options.shadow_map_size,
             samples: options.samples,
+            lens: lens.clone(),
             ..DrawList::default()
         };
-        Self {
+        Ok(Self {
             scene,
             library,
             cast,
             options,
             view_from_world,
-            frustum: Frustum::new(&scene.camera),
+            frustum: Frustum::new(&scene.camera, lens.as_deref()),
+            finest_focal_px: scene.camera.focal_px() * lens.map_or(1.0, |l| l.magnification()),
             shadow_direction: sun.map(|s| view_from_world.transform_vector3(s.direction_to_sun)),
             surfaces: surfaces::Surfaces::default(),
             drawn: Drawn { list, ..Drawn::default() },
-        }
+        })
     }
 
     /// Pixels that a metre spans at most, at the nearest point of a hull of spheres.
@@ -166,7 +182,7 @@ impl<'a> Drawing<'a> {
         // The distance along the axis decides; off the axis it is more than the near side suggests,
         // and round the camera the near plane bounds it.
         let nearest_m = (-reach_along(DVec3::Z, hull)).max(self.scene.camera.near_m);
-        self.scene.camera.focal_px() / nearest_m
+        self.finest_focal_px / nearest_m
     }
 
     /// Whether what lies in a hull of spheres may be seen, and whether its shadow may be.
@@ -194,6 +210,14 @@ impl Relevance {
 fn view_from_world(camera: &Camera) -> DAffine3 {
     let rotation = DMat3::from_quat(camera.rotation.inverse());
     DAffine3::from_mat3_translation(rotation, -(rotation * camera.position_m))
+}
+
+/// The way back through a camera's lens.
+fn lens(camera: &Camera) -> Result<Option<Arc<LensGrid>>, LensError> {
+    let Some(lens) = camera.distortion else { return Ok(None) };
+    let focal_px = DVec2::splat(camera.focal_px());
+    let size_px = [camera.width, camera.height];
+    Ok(Some(Arc::new(LensGrid::new(lens, focal_px, camera.center_px(), size_px)?)))
 }
 
 fn view(camera: &Camera, view_from_world: &DAffine3) -> abi::View {
@@ -225,7 +249,7 @@ pub fn rows(b_from_a: &DAffine3) -> [[f32; 4]; 3] {
 #[cfg(test)]
 pub(crate) fn empty_object() -> abi::DrawObject {
     abi::DrawObject {
-        mesh: std::sync::Arc::default(),
+        mesh: Arc::default(),
         view_from_model: rows(&DAffine3::IDENTITY),
         palette: 0..0,
         in_view: true,

@@ -74,6 +74,10 @@ fn check_sizes(list: &DrawList) -> Result<(), EngineError> {
     if view.width == 0 || view.height == 0 {
         return invalid("picture size", 0, 0, "at least one pixel");
     }
+    let size = [view.width, view.height];
+    if list.lens.as_ref().is_some_and(|lens| lens.size_px() != size) {
+        return invalid("size of the lens's picture", 0, 0, "the size of the picture");
+    }
     if !list.shadow_map_size.is_multiple_of(64) {
         return invalid("shadow map size", 0, list.shadow_map_size.into(), "a multiple of 64");
     }

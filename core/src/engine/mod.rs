@@ -3,7 +3,8 @@
 //! An engine knows nothing of documents, labels or files. [`cpu`] is native Rust: tiles over
 //! threads, eight-wide portable SIMD, the same bytes on every machine. `gpu` (feature `gpu`) runs
 //! the same stages as compute shaders by way of wgpu. What they share is `input`, which says what
-//! a draw list must fulfil, `pattern`, where samples lie, and `noise`, the grain of a pixel.
+//! a draw list must fulfil, `pattern`, where samples lie, `lens` and `squares`, where they lie behind
+//! a lens, and `noise`, the grain of a pixel.
 
 use crate::draw::DrawList;
 use crate::plan::{Frame, PassPlan, StageTimes};
@@ -12,8 +13,10 @@ pub mod cpu;
 #[cfg(feature = "gpu")]
 pub mod gpu;
 mod input;
+mod lens;
 mod noise;
 mod pattern;
+mod squares;
 
 /// What can go wrong while a frame is rendered.
 #[derive(Debug, thiserror::Error)]

@@ -50,6 +50,8 @@ struct ImageExtras<'a> {
     #[serde(rename = "R")]
     r: [[f64; 3]; 3],
     t: [f64; 3],
+    #[serde(skip_serializing_if = "Option::is_none")]
+    distortion_model: Option<&'static str>,
     distortion: &'a [f64],
     scene: String,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -123,6 +125,7 @@ pub(super) fn fragment(info: &DatasetInfo, labels: &Annotations) -> Result<Vec<u
             k: labels.camera.k,
             r: labels.camera.r,
             t: labels.camera.t,
+            distortion_model: labels.camera.distortion_model,
             distortion: &labels.camera.distortion,
             scene: file(FrameFile::Scene),
             instance: wants(Output::Instance).then(|| file(FrameFile::Instance)),

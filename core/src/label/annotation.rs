@@ -78,7 +78,7 @@ pub struct Annotations {
     pub semantic: Option<Vec<u8>>,
 }
 
-/// The camera in the terms of computer vision: `x = K (R X + t)`.
+/// The camera in the terms of computer vision: `x = K distort(R X + t)`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CameraLabel {
     /// Intrinsic matrix, rows.
@@ -87,7 +87,10 @@ pub struct CameraLabel {
     pub r: [[f64; 3]; 3],
     /// Translation of the same, metres.
     pub t: [f64; 3],
-    /// Coefficients in OpenCV's order (k1, k2, p1, p2, k3); empty for a pinhole.
+    /// Model of the distortion, as the config names it; none for a pinhole.
+    pub distortion_model: Option<&'static str>,
+    /// Coefficients in OpenCV's order: k1, k2, p1, p2, k3 of `cv2.projectPoints`, or k1 to k4 of
+    /// `cv2.fisheye`; empty for a pinhole.
     pub distortion: Vec<f64>,
 }
 
@@ -98,7 +101,8 @@ impl From<&Camera> for CameraLabel {
             r: camera.cv_from_world_rotation().transpose().to_cols_array_2d(),
             // Adding zero turns -0 into 0.
             t: camera.cv_from_world_translation().to_array().map(|v| v + 0.0),
-            distortion: Vec::new(),
+            distortion_model: camera.distortion.map(|lens| lens.model()),
+            distortion: camera.distortion.map_or_else(Vec::new, |lens| lens.coefficients()),
         }
     }
 }
@@ -376,10 +380,12 @@ impl From<Role> for SemanticClass {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use glam::{DQuat, DVec3};
+    use crate::base::lens::Lens;
+    use glam::{DQuat, DVec2, DVec3};
 
     #[test]
     fn the_camera_label_projects_as_the_camera_does() {
+        let lens = Lens::Brown { k1: -0.2, k2: 0.05, p1: 0.001, p2: -0.002, k3: 0.01 };
         let camera = Camera {
             width: 640,
             height: 480,
@@ -387,8 +393,13 @@ mod tests {
             position_m: DVec3::new(1.5, -2.0, 15.0),
             rotation: DQuat::from_rotation_y(0.2) * DQuat::from_rotation_x(-0.1),
             near_m: 0.3,
+            distortion: None,
         };
-        let CameraLabel { k, r, t, .. } = CameraLabel::from(&camera);
+        let through = Camera { distortion: Some(lens), ..camera };
+        let CameraLabel { k, r, t, distortion_model, distortion } = CameraLabel::from(&through);
+        assert_eq!(distortion_model, Some("brown"));
+        assert_eq!(distortion, [-0.2, 0.05, 0.001, -0.002, 0.01]);
+        assert_eq!(CameraLabel::from(&camera).distortion, []);
         let dot = |a: [f64; 3], b: [f64; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
         for p in [DVec3::ZERO, DVec3::new(-1.0, 2.0, 3.0), DVec3::new(2.0, 0.5, -8.0)] {
             let x = [0, 1, 2].map(|i| dot(r[i], p.to_array()) + t[i]);
@@ -396,6 +407,11 @@ mod tests {
             let expected = camera.project(camera.view_from_world(p)).unwrap();
             assert!((q[0] / q[2] - expected.x).abs() < 1e-9, "{p}");
             assert!((q[1] / q[2] - expected.y).abs() < 1e-9, "{p}");
+            // x = K distort(R X + t).
+            let distorted = lens.distort(DVec2::new(x[0], x[1]) / x[2]);
+            let q = k.map(|row| dot(row, [distorted.x, distorted.y, 1.0]));
+            let expected = through.project(through.view_from_world(p)).unwrap();
+            assert!((q[0] - expected.x).abs() < 1e-9 && (q[1] - expected.y).abs() < 1e-9, "{p}");
         }
     }
 

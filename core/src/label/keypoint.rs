@@ -32,6 +32,7 @@ pub fn label_all(
             camera_m: cv_from_view(p_in_view).to_array(),
             reason: match at {
                 None => Visibility::BehindCamera,
+                Some(_) if !scene.camera.lens_reaches(p_in_view) => Visibility::OutOfFrame,
                 Some(at) => seen.judge(at, -p_in_view.z, person.keypoint_tolerance_m[k]),
             },
             visible_fraction: None,

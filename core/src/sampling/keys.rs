@@ -143,6 +143,7 @@ keys! {
     SATURATION = "post.saturation",
     GRAIN = "post.grain",
     GRAIN_NOISE = "post.grain.noise",
+    CAMERA_DISTORTION = "camera.distortion",
 }
 
 #[cfg(test)]

@@ -1,18 +1,20 @@
-//! The pinhole camera, and the projection that every label goes through.
+//! The camera, and the projection that every label goes through.
 
 use glam::{DMat3, DQuat, DVec2, DVec3};
 use serde::{Deserialize, Serialize};
 
+use crate::base::lens::Lens;
 use crate::base::space::CV_FROM_VIEW;
 
-/// A pinhole camera with square pixels and its principal point in the middle.
+/// A camera with square pixels and its principal point in the middle.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Camera {
     /// Picture width in pixels.
     pub width: u32,
     /// Picture height in pixels.
     pub height: u32,
-    /// Angle between the rays through the middle of the top and bottom edge, degrees.
+    /// Angle between the rays through the middle of the top and bottom edge, degrees; without the
+    /// distortion.
     pub fov_vertical_deg: f64,
     /// Where it stands, metres, world.
     pub position_m: DVec3,
@@ -20,6 +22,9 @@ pub struct Camera {
     pub rotation: DQuat,
     /// Distance of the near plane along the view axis.
     pub near_m: f64,
+    /// What its lens makes of the pinhole's picture.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub distortion: Option<Lens>,
 }
 
 impl Camera {
@@ -65,8 +70,20 @@ impl Camera {
     pub fn project(&self, p_in_view: DVec3) -> Option<DVec2> {
         let distance = -p_in_view.z;
         (distance > 0.0).then(|| {
-            let f = self.focal_px() / distance;
-            self.center_px() + DVec2::new(p_in_view.x * f, -p_in_view.y * f)
+            let Some(lens) = &self.distortion else {
+                let f = self.focal_px() / distance;
+                return self.center_px() + DVec2::new(p_in_view.x * f, -p_in_view.y * f);
+            };
+            let undistorted = DVec2::new(p_in_view.x, -p_in_view.y) / distance;
+            self.center_px() + lens.distort(undistorted) * self.focal_px()
         })
+    }
+
+    /// Whether the lens shows a view-space point in front of the camera, however large the picture:
+    /// a polynomial may lead back where it shows nothing.
+    #[must_use]
+    pub fn lens_reaches(&self, p_in_view: DVec3) -> bool {
+        let undistorted = DVec2::new(p_in_view.x, -p_in_view.y) / -p_in_view.z;
+        self.distortion.is_none_or(|lens| lens.reaches(undistorted))
     }
 }

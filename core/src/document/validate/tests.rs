@@ -39,6 +39,14 @@ fn hostile_values_are_refused_with_their_path() {
         ("/camera/fov_vertical_deg", json!(0), "camera.fov_vertical_deg"),
         ("/camera/fov_vertical_deg", json!({"uniform": [5, 180]}), "camera.fov_vertical_deg"),
         ("/camera/near_m", json!(0), "camera.near_m"),
+        ("/camera/distortion", json!({"model": "brown", "k6": 0}), "camera.distortion.k6"),
+        ("/camera/distortion", json!({"model": "pinhole"}), "camera.distortion.model"),
+        ("/camera/distortion", json!({"k1": 0.1}), "camera.distortion.model"),
+        (
+            "/camera/distortion",
+            json!({"model": "fisheye", "k2": {"uniform": [0, 2000]}}),
+            "camera.distortion.k2",
+        ),
         ("/camera/position_m", json!([0, 1e300, 0]), "camera.position_m[1]"),
         (
             "/camera/position_offset_m",

@@ -59,7 +59,7 @@ pub(super) struct Triangle {
     pub(super) plane: DepthPlane,
     /// Largest depth of the three corners.
     pub(super) nearest: f32,
-    /// First and last pixel in x, then in y, that may hold covered samples.
+    /// First and last pixel of the picture in x, then in y, that may hold covered samples.
     pub(super) pixels: [u16; 4],
     /// Too large for 32-bit edge functions over a whole tile.
     pub(super) large: bool,

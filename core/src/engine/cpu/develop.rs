@@ -6,7 +6,7 @@
 //! implementation" (2023). The formulas stand in `shaders/shared/develop.wgsl` as well.
 
 use super::samples::{Layout, TILE};
-use super::shade::{Stage, TileColor};
+use super::shade::{LensRays, Stage, TileColor};
 use super::simd::{F32x8, LANES, Vec3x8, kernel};
 use crate::draw::DrawList;
 use crate::draw::abi::{ColorGrade, ToneCurve};
@@ -153,17 +153,17 @@ fn agx_curve<const AVX2: bool>(v: F32x8<AVX2>) -> F32x8<AVX2> {
         - s(0.002_32)
 }
 
-/// What shows where nothing stands.
-pub(super) struct Backdrop {
-    /// Exposed light, where there is no picture of the surroundings.
-    pub(super) light: [f32; 3],
-}
+/// What shows where nothing stands, unless there is a picture of the surroundings: exposed light.
+#[derive(Clone, Copy)]
+pub(super) struct Backdrop(pub(super) [f32; 3]);
 
 kernel! {
-    /// Starts a tile's colours with what shows where nothing stands; `share` by pixel slot.
+    /// Starts a tile's colours with what shows where nothing stands; `share` by pixel slot, `rays`
+    /// those of a lens where there is one.
     fn start_with_background[const S: usize](
         stage: &Stage<'_>,
-        backdrop: &Backdrop,
+        backdrop: Backdrop,
+        rays: Option<&LensRays>,
         origin_px: [u32; 2],
         share: &[f32],
         color: &mut TileColor,
@@ -173,7 +173,8 @@ kernel! {
 #[inline(always)]
 fn start_with_background_body<const AVX2: bool, const S: usize>(
     stage: &Stage<'_>,
-    backdrop: &Backdrop,
+    backdrop: Backdrop,
+    rays: Option<&LensRays>,
     origin_px: [u32; 2],
     share: &[f32],
     color: &mut TileColor,
@@ -182,7 +183,7 @@ fn start_with_background_body<const AVX2: bool, const S: usize>(
     let develop = &stage.develop;
     let environment = stage.lighting.environment();
     let varies = develop.vignette.is_some() || environment.is_some();
-    let mut exposed = Vec3x8::splat(backdrop.light);
+    let mut exposed = Vec3x8::splat(backdrop.0);
     let plain = develop.display::<AVX2>(exposed, [F32x8::ZERO; 2]);
     for first in (0..TILE * TILE).step_by(LANES) {
         let share = F32x8::<AVX2>::load(&share[first..]);
@@ -196,7 +197,15 @@ fn start_with_background_body<const AVX2: bool, const S: usize>(
             }
             let at = [F32x8(x), F32x8(y)];
             if let Some(environment) = environment {
-                exposed = environment.seen(stage.rays.through(at));
+                let directions = match rays {
+                    Some(rays) => Vec3x8::new(
+                        F32x8::load(&rays[0][first..]),
+                        F32x8::load(&rays[1][first..]),
+                        F32x8::splat(-1.0),
+                    ),
+                    None => stage.rays.directions(at),
+                };
+                exposed = environment.seen(directions);
             }
             light = develop.display(exposed, at);
         }

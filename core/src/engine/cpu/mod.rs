@@ -5,7 +5,8 @@
 //! | skin | `skin`, `project` | meshes, palette -> placed and projected vertices |
 //! | visibility | `chunk`, `setup`, `clip`, `bin` | -> triangles by tile |
 //! | shadow | `shadow` | -> the sun's depth map, fitted to what is seen, rastered where it is looked up |
-//! | per tile (`tile`): visibility | `raster`, `samples` | -> object, triangle and depth of each sample |
+//! | behind a lens | `lens` | -> where samples lie in the pinhole's plane |
+//! | per tile (`tile`): visibility | `raster`, `lens_raster`, `samples` | -> object, triangle and depth of each sample |
 //! | per tile: shade | `fragment`, `shade`, `develop` | -> linear display light |
 //! | per tile: display | `display` | -> the 8-bit picture |
 //! | per tile: resolve, reduce | `resolve`, `reduce` | -> ids, distances, counts, extents |
@@ -22,6 +23,8 @@ mod clip;
 mod develop;
 mod display;
 mod fragment;
+mod lens;
+mod lens_raster;
 mod project;
 mod raster;
 mod reduce;
@@ -40,6 +43,7 @@ use rayon::prelude::*;
 
 use self::chunk::{Chunk, ChunkList};
 use self::develop::{Backdrop, Develop};
+use self::lens::Lens;
 use self::project::{Projection, ScreenVertex};
 use self::samples::TILE;
 use self::setup::Target;
@@ -83,6 +87,8 @@ pub struct CpuEngine {
 #[derive(Default)]
 struct Buffers {
     placed: skin::Placed,
+    /// That of the last frame that had one.
+    lens: Option<Lens>,
     visible: ChunkList,
     casting: ChunkList,
     sun_screen: Vec<ScreenVertex>,
@@ -172,28 +178,41 @@ impl Buffers {
         let casts: Vec<bool> =
             list.objects.iter().map(|o| o.casts_shadow && axes.is_some()).collect();
         let wanted: Vec<bool> = seen.iter().zip(&casts).map(|(a, b)| *a || *b).collect();
-        let projection = Projection::perspective(&list.view);
+        times.measure("lens", || self.look_through_lens::<S>(level, list));
+        let lens = self.lens.as_ref().filter(|_| list.lens.is_some());
+        let projection = Projection::perspective(lens.map_or(&list.view, |l| &l.plane.plane));
         let shades = plan.runs(Pass::Shade);
 
         times.measure("skin", || self.placed.place(level, list, &projection, &wanted, shades))?;
         times.measure("setup", || {
             self.visible.fill(list, &self.placed, &seen)?;
             let (placed, chunks) = (&self.placed, self.visible.as_mut_slice());
-            let target = Target {
-                shaded: shades,
-                sun: axes.as_ref(),
-                ..Target::picture::<S>(&placed.vertices, &placed.screen, &projection)
+            let (vertices, screen) = (&placed.vertices, &placed.screen);
+            let whole = match lens {
+                Some(lens) => Target::lens(vertices, screen, &projection, &lens.squares),
+                None => Target::picture::<S>(vertices, screen, &projection),
             };
+            let target = Target { shaded: shades, sun: axes.as_ref(), ..whole };
             set_up_all(level, chunks, list, &target);
-            self.visible.sort_by_tile(projection.size, target.tile_log2);
+            self.visible.sort_by_tile([list.view.width, list.view.height], target.tile_log2);
             Ok(())
         })?;
         let shadow = match &axes {
-            Some(axes) => self.shadow(level, list, axes, [&seen, &casts], times)?,
+            Some(axes) => {
+                let plane_px = projection.size;
+                self.shadow(level, list, axes, plane_px, [&seen, &casts], times)?
+            }
             None => None,
         };
         self.tiles::<S>(level, list, plan, shadow, &mut frame, times);
         Ok(frame)
+    }
+
+    /// Makes the tables of a draw list's lens, unless those of an earlier frame serve.
+    fn look_through_lens<const S: usize>(&mut self, level: Level, list: &DrawList) {
+        if list.lens.is_some() && !self.lens.as_ref().is_some_and(|lens| lens.serves(list)) {
+            self.lens = Lens::new::<S>(level, list);
+        }
     }
 
     /// Fits the sun's shadow map and sets up what it will show; nothing if no shadow can be seen.
@@ -202,6 +221,7 @@ impl Buffers {
         level: Level,
         list: &DrawList,
         axes: &SunAxes,
+        plane_px: [u32; 2],
         [seen, casts]: [&[bool]; 2],
         times: &mut StageTimes,
     ) -> Result<Option<ShadowView>, EngineError> {
@@ -210,7 +230,7 @@ impl Buffers {
             return Ok(None);
         }
         let (view, casts) = times.measure("shadow fit", || {
-            let (casters, receivers) = self.bounds(level, list, axes, [seen, casts]);
+            let (casters, receivers) = self.bounds(level, list, axes, plane_px, [seen, casts]);
             let reaches: Vec<bool> = casters.iter().map(|c| c.may_shade(&receivers)).collect();
             let casting = casters.iter().zip(&reaches).filter(|(_, reaches)| **reaches);
             let casters = casting.fold(Bounds::EMPTY, |all, (caster, _)| all.join(caster));
@@ -239,14 +259,14 @@ impl Buffers {
         level: Level,
         list: &DrawList,
         axes: &SunAxes,
+        plane_px: [u32; 2],
         [seen, casts]: [&[bool]; 2],
     ) -> (Vec<Bounds>, Bounds) {
-        let size = [list.view.width, list.view.height];
         let placed = &self.placed;
         let of_object = |object: usize| {
             let span = placed.first_vertex[object]..placed.first_vertex[object + 1];
             let (vertices, screen) = (&placed.vertices[span.clone()], &placed.screen[span]);
-            let (all, visible) = shadow::bound_vertices(level, vertices, screen, size, axes);
+            let (all, visible) = shadow::bound_vertices(level, vertices, screen, plane_px, axes);
             (
                 if casts[object] { all } else { Bounds::EMPTY },
                 if seen[object] { visible } else { Bounds::EMPTY },
@@ -283,6 +303,7 @@ impl Buffers {
             level,
             list,
             placed: &self.placed,
+            lens: self.lens.as_ref().filter(|_| list.lens.is_some()),
             chunks: self.visible.as_slice(),
             by_tile: self.visible.by_tile(),
             shading: shades.then(|| shading(list, self.visible.as_slice(), &self.placed, shadow)),
@@ -363,7 +384,7 @@ fn shading<'a>(
             develop: Develop::new(list),
         },
         surfaces: list.materials.iter().map(|m| Surface::new(m, list)).collect(),
-        backdrop: Backdrop { light: list.lights.background_nits.map(|nits| nits * list.exposure) },
+        backdrop: Backdrop(list.lights.background_nits.map(|nits| nits * list.exposure)),
     }
 }
 

@@ -85,7 +85,7 @@ fn raster_body<const AVX2: bool, const S: usize, const IDS: bool, const SIDE: us
 
 /// First and last column, then row, of the blocks that a triangle may touch.
 #[derive(Clone, Copy)]
-struct Blocks([i32; 4]);
+pub(super) struct Blocks(pub(super) [i32; 4]);
 
 impl Blocks {
     #[inline(always)]
@@ -100,7 +100,7 @@ impl Blocks {
 
     /// Whether all samples of all these blocks are at least as near as `nearest`.
     #[inline(always)]
-    fn all_hide(self, nearest: f32, blocks_per_row: usize, farthest: &[f32]) -> bool {
+    pub(super) fn all_hide(self, nearest: f32, blocks_per_row: usize, farthest: &[f32]) -> bool {
         let [x0, x1, y0, y1] = self.0;
         (y0..y1 + 1).all(|y| {
             let row = y as usize * blocks_per_row;

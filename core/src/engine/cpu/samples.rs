@@ -25,6 +25,8 @@ impl<const S: usize> Layout<S> {
     };
     /// A block's side in pixels.
     pub(super) const BLOCK_PX: i32 = 1 << Self::BLOCK_LOG2;
+    /// Blocks in a row of a tile.
+    pub(super) const BLOCKS_ACROSS: usize = TILE >> Self::BLOCK_LOG2;
     /// log2 of the grid that sample positions are multiples of, in raster coordinates: one pixel
     /// for a single sample, else 1/16 pixel.
     pub(super) const GRID_LOG2: u32 = if S == 1 { RASTER_BITS } else { RASTER_BITS - 4 };

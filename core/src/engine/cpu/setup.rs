@@ -9,6 +9,7 @@ use super::samples::{Layout, RASTER_BITS, TILE};
 use super::shadow::SunAxes;
 use super::simd::{I32x8, LANES, Mask8, kernel, unzipped};
 use super::{clip, shadow};
+use crate::engine::squares::Squares;
 use crate::library::mesh;
 
 /// Triangles up to this size have edge functions below 2^31 all over a tile: with extent E and
@@ -39,6 +40,9 @@ pub(super) struct Target<'a> {
     pub(super) shaded: bool,
     /// Axes along which to bound what is seen, for the fit of a shadow map.
     pub(super) sun: Option<&'a SunAxes>,
+    /// Where in the picture the samples of a lens's plane stand; without a lens they stand where
+    /// they are.
+    pub(super) squares: Option<&'a Squares>,
 }
 
 impl<'a> Target<'a> {
@@ -57,6 +61,22 @@ impl<'a> Target<'a> {
             row_step_log2: Layout::<S>::ROW_STEP_LOG2,
             shaded: false,
             sun: None,
+            squares: None,
+        }
+    }
+
+    /// The plane behind a lens, where samples may lie anywhere.
+    pub(super) fn lens(
+        vertices: &'a [Vertex],
+        screen: &'a [ScreenVertex],
+        projection: &'a Projection,
+        squares: &'a Squares,
+    ) -> Self {
+        Self {
+            first_row: 0,
+            row_step_log2: 0,
+            squares: Some(squares),
+            ..Self::picture::<1>(vertices, screen, projection)
         }
     }
 
@@ -283,7 +303,13 @@ impl Chunk {
 
     /// Takes a triangle over.
     #[inline(always)]
-    pub(super) fn push(&mut self, triangle: Triangle, corners: [u32; 3], target: &Target<'_>) {
+    pub(super) fn push(&mut self, mut triangle: Triangle, corners: [u32; 3], target: &Target<'_>) {
+        if let Some(squares) = target.squares {
+            match squares.pixels_of(triangle.pixels) {
+                Some(pixels) => triangle.pixels = pixels,
+                None => return,
+            }
+        }
         if target.shaded {
             let normal = facing(&triangle.plane, target.projection);
             self.faces.push(Face { corners, normal });

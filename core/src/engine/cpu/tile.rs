@@ -8,6 +8,8 @@ use std::time::{Duration, Instant};
 use super::bin::ChunksByTile;
 use super::chunk::{Chunk, NOTHING};
 use super::fragment::{Fragments, Visible, gather};
+use super::lens::{Lens, LensTile};
+use super::lens_raster::raster_lens_tile;
 use super::raster::raster_tile;
 use super::reduce;
 use super::resolve::{Resolved, SampleObjects, objects_of_samples, resolve};
@@ -39,6 +41,8 @@ pub(super) struct Scratch {
     depth: Vec<f32>,
     ids: Vec<u32>,
     farthest: Vec<f32>,
+    /// The lens's tile where those are not kept.
+    lens: LensTile,
     fragments: Fragments,
     reaching: Vec<u32>,
     color: Box<TileColor>,
@@ -58,6 +62,7 @@ impl Default for Scratch {
             depth: Vec::new(),
             ids: Vec::new(),
             farthest: Vec::new(),
+            lens: LensTile::default(),
             fragments: Fragments::default(),
             reaching: Vec::new(),
             color: Box::new([[0.0; TILE * TILE]; 3]),
@@ -105,6 +110,7 @@ pub(super) struct TilePass<'a> {
     pub(super) level: Level,
     pub(super) list: &'a DrawList,
     pub(super) placed: &'a skin::Placed,
+    pub(super) lens: Option<&'a Lens>,
     pub(super) chunks: &'a [Chunk],
     pub(super) by_tile: &'a ChunksByTile,
     /// Present when the picture is wanted.
@@ -140,20 +146,15 @@ impl TilePass<'_> {
         let origin_px = tile.map(|t| t * TILE as u32);
         let size = [view.width - origin_px[0], view.height - origin_px[1]]
             .map(|rest| rest.min(TILE as u32) as usize);
-        scratch.measure(Step::Raster, |s| {
-            raster_tile::<S, true, TILE>(
-                self.level,
-                self.chunks,
-                self.by_tile.of(tile),
-                tile,
-                &mut s.depth,
-                &mut s.ids,
-                &mut s.farthest,
-            );
+        let mut own = std::mem::take(&mut scratch.lens);
+        let lens = scratch.measure(Step::Raster, |s| {
+            let lens = self.lens.map(|lens| lens.tile::<S>(self.level, tile, &mut own));
+            self.raster::<S>(tile, lens, s);
             clear_outside::<S>(size, &mut s.depth, &mut s.ids);
+            lens
         });
         if let Some(shading) = &self.shading {
-            self.shade::<S>(shading, origin_px, scratch);
+            self.shade::<S>(shading, origin_px, lens, scratch);
             let grade = &self.list.grade;
             scratch.measure(Step::Display, |s| {
                 let grainy = grade.grain > 0.0;
@@ -191,12 +192,28 @@ impl TilePass<'_> {
                 reduce::reduce::<S>(self.level, &s.objects, origin_px, &mut s.sums)
             });
         }
+        scratch.lens = own;
+    }
+
+    fn raster<const S: usize>(&self, tile: [u32; 2], lens: Option<&LensTile>, s: &mut Scratch) {
+        let (level, chunks, touching) = (self.level, self.chunks, self.by_tile.of(tile));
+        let (depth, ids, farthest) = (&mut s.depth[..], &mut s.ids[..], &mut s.farthest[..]);
+        match lens {
+            Some(lens) => {
+                let samples = (depth, ids, farthest);
+                raster_lens_tile::<S>(level, chunks, touching, tile, lens, samples);
+            }
+            None => {
+                raster_tile::<S, true, TILE>(level, chunks, touching, tile, depth, ids, farthest)
+            }
+        }
     }
 
     fn shade<const S: usize>(
         &self,
         shading: &Shading<'_>,
         origin_px: [u32; 2],
+        lens: Option<&LensTile>,
         scratch: &mut Scratch,
     ) {
         let view = &self.list.view;
@@ -212,14 +229,15 @@ impl TilePass<'_> {
             develop::start_with_background::<S>(
                 self.level,
                 &shading.stage,
-                &shading.backdrop,
+                shading.backdrop,
+                lens.map(|lens| &*lens.rays),
                 origin_px,
                 &s.fragments.background,
                 &mut s.color,
             );
         });
         scratch.measure(Step::Shade, |s| {
-            if let Some((low, high)) = self.tile_box(origin_px, &s.depth) {
+            if let Some((low, high)) = self.tile_box(origin_px, lens, &s.depth) {
                 shading.stage.lighting.reaching(low, high, &mut s.reaching);
             }
             for bucket in s.fragments.buckets() {
@@ -229,13 +247,23 @@ impl TilePass<'_> {
                     double_sided: draw.double_sided,
                     mirrored: self.placed.mirrored[draw.object as usize],
                 };
-                shade(self.level, &shading.stage, drawn, &s.reaching, bucket, &mut s.color);
+                let (level, stage, reaching) = (self.level, &shading.stage, &s.reaching);
+                let (color, rays) = (&mut s.color, lens.map(|lens| &*lens.rays));
+                match rays {
+                    Some(_) => shade::<true>(level, stage, drawn, rays, reaching, bucket, color),
+                    None => shade::<false>(level, stage, drawn, rays, reaching, bucket, color),
+                }
             }
         });
     }
 
     /// A view-space box round everything that a tile shows; nothing if it shows nothing.
-    fn tile_box(&self, origin_px: [u32; 2], depth: &[f32]) -> Option<([f32; 3], [f32; 3])> {
+    fn tile_box(
+        &self,
+        origin_px: [u32; 2],
+        lens: Option<&LensTile>,
+        depth: &[f32],
+    ) -> Option<([f32; 3], [f32; 3])> {
         let view = &self.list.view;
         let [near, far] = depth_range(self.level, depth);
         if near <= 0.0 {
@@ -243,8 +271,12 @@ impl TilePass<'_> {
         }
         let distance = [view.near_m / near * 0.9999, view.near_m / far * 1.0001];
         let px = |i: usize, end: u32| (origin_px[i] + end) as f32;
-        let x = [0, TILE as u32].map(|end| (px(0, end) - view.cx) / view.fx);
-        let y = [TILE as u32, 0].map(|end| (view.cy - px(1, end)) / view.fy);
+        let mut x = [0, TILE as u32].map(|end| (px(0, end) - view.cx) / view.fx);
+        let mut y = [TILE as u32, 0].map(|end| (view.cy - px(1, end)) / view.fy);
+        if let Some((lens, tile)) = self.lens.zip(lens) {
+            let [left, bottom, right, top] = tile.ray_box(&lens.plane);
+            (x, y) = ([left, right], [bottom, top]);
+        }
         let low = |v: f32| (v * distance[0]).min(v * distance[1]);
         let high = |v: f32| (v * distance[0]).max(v * distance[1]);
         Some(([low(x[0]), low(y[0]), -distance[1]], [high(x[1]), high(y[1]), -distance[0]]))

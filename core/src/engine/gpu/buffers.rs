@@ -111,7 +111,9 @@ fn usages(resource: Resource) -> wgpu::BufferUsages {
 /// What to call a buffer where it is too large.
 const fn name(resource: Resource) -> &'static str {
     match resource {
-        Resource::Frame | Resource::Target | Resource::SunTarget => "graphics memory of the frame",
+        Resource::Frame | Resource::Target | Resource::SunTarget | Resource::Plane => {
+            "graphics memory of the frame"
+        }
         Resource::VertexBatches | Resource::Vertices | Resource::Screen => {
             "graphics memory of vertices"
         }
@@ -129,5 +131,6 @@ const fn name(resource: Resource) -> &'static str {
         Resource::Samples => "graphics memory of samples",
         Resource::ShadowMap | Resource::SunView => "graphics memory of the shadow map",
         Resource::Picture | Resource::Resolved => "graphics memory of the picture",
+        Resource::Squares | Resource::Places | Resource::Rays => "graphics memory of the lens",
     }
 }

@@ -5,7 +5,7 @@
 //! | skin | `skin` | meshes, palette -> placed and projected vertices |
 //! | visibility | `setup`, `clip`, `bin`, `scan` | -> triangles by tile |
 //! | shadow | `bound`, `fit`, `project`, `sun_setup`, `clip`, `shadow` | -> the sun's depth map |
-//! | visibility | `raster` | -> triangle and depth of each sample |
+//! | visibility | `raster` | -> triangle and depth of each sample; behind a lens by the tables of `lens` |
 //! | shade, display | `shade` | -> the 8-bit picture |
 //! | resolve, reduce | `resolve`, `reduce` | -> ids, distances, counts, extents |
 //!
@@ -31,6 +31,7 @@ mod abi;
 mod adapter;
 mod buffers;
 mod device;
+mod lens;
 mod pack;
 mod pool;
 mod present;
@@ -51,6 +52,7 @@ use std::time::Instant;
 use self::abi::{Bounds, Counters, LARGE_ROOM, MAX_LAMPS, ObjectSums, Primitive};
 use self::buffers::Buffers;
 use self::device::Device;
+use self::lens::Lens;
 use self::pack::{Packed, Places, Wanted};
 use self::pool::Pool;
 use self::present::Presenter;
@@ -149,6 +151,10 @@ struct State {
     meshes: Pool<Mesh>,
     textures: Pool<[u32]>,
     packed: Packed,
+    /// That of the last frame that had one.
+    lens: Option<Lens>,
+    /// Whether the device holds the tables of its last band.
+    lens_is_there: bool,
     readback: Readback,
     present: Option<Presenter>,
     clock: Option<Clock>,
@@ -195,6 +201,8 @@ impl State {
             meshes: Pool::new("graphics memory of meshes"),
             textures: Pool::new("graphics memory of textures"),
             packed: Packed::default(),
+            lens: None,
+            lens_is_there: false,
             readback: Readback::default(),
             present: None,
             room: Room::default(),
@@ -233,6 +241,7 @@ impl State {
         });
         let sun = list.lights.sun.is_some_and(|sun| sun.shadow);
         let shadow = sun && plan.runs(Pass::Shadow) && list.shadow_map_size > 0;
+        times.measure("lens", || self.look_through_lens(list))?;
         self.upload(list, plan, shadow, times)?;
         for _ in 0..TRIES {
             if self.bands(list, plan, shadow, &mut frame, times)? {
@@ -244,6 +253,15 @@ impl State {
         }
         let (what, got) = ("number of triangles by tile", self.room.entries);
         Err(EngineError::TooLarge { what, got, limit: self.device.largest_buffer() / 4 })
+    }
+
+    /// Makes the tables of a draw list's lens, unless those of an earlier frame serve.
+    fn look_through_lens(&mut self, list: &DrawList) -> Result<(), EngineError> {
+        if list.lens.is_some() && !self.lens.as_ref().is_some_and(|lens| lens.serves(list)) {
+            self.lens = Lens::new(list, self.band_rows(list)?);
+            self.lens_is_there = false;
+        }
+        Ok(())
     }
 
     /// The plan as it can be carried out: where nobody shows pictures they are read back.
@@ -315,6 +333,12 @@ impl State {
             }
         }
         buffers.write(device, Resource::Frame, &[packed.frame])?;
+        let lens = self.lens.as_ref().filter(|_| list.lens.is_some());
+        let plane = match lens {
+            Some(lens) => pack::plane_target(lens.plane(), packed),
+            None => pack::picture_target(list, packed, 0, list.view.height),
+        };
+        buffers.write(device, Resource::Plane, &[plane])?;
         buffers.write(device, Resource::VertexBatches, &packed.vertex_batches)?;
         buffers.write(device, Resource::Batches, &packed.batches)?;
         buffers.write(device, Resource::SunBatches, &packed.sun_batches)?;
@@ -368,6 +392,7 @@ impl State {
         for first_y in (0..list.view.height).step_by(rows as usize) {
             let rows = rows.min(list.view.height - first_y);
             let band = Band { first_y, rows, last: first_y + rows == list.view.height };
+            times.measure("lens", || self.bring_lens(list, band))?;
             times.measure("submit", || self.submit(list, plan, shadow, band))?;
             let start = Instant::now();
             self.readback.wait(&self.device)?;
@@ -394,7 +419,8 @@ impl State {
     /// Rows of pixels of a band, a multiple of the tile's, such that everything by pixel fits.
     fn band_rows(&self, list: &DrawList) -> Result<u32, EngineError> {
         let limit = self.device.largest_buffer();
-        let per_row = u64::from(list.view.width) * 8 * u64::from(list.samples);
+        let of_ray = if list.lens.is_some() { lens::RAY_BYTES } else { 0 };
+        let per_row = u64::from(list.view.width) * (8 * u64::from(list.samples)).max(of_ray);
         let staging = u64::from(list.view.width) * 12 + 1;
         let rows = (limit / per_row).min(self.device.limits.max_buffer_size / 2 / staging);
         let rows = rows.min(8192) as u32 / abi::TILE * abi::TILE;
@@ -429,6 +455,19 @@ impl State {
         Ok(())
     }
 
+    /// Brings the tables of a band behind a lens to the device, unless they are there.
+    fn bring_lens(&mut self, list: &DrawList, band: Band) -> Result<(), EngineError> {
+        let Some(lens) = self.lens.as_mut().filter(|_| list.lens.is_some()) else { return Ok(()) };
+        let made = lens.take_band(list.view.width, [band.first_y, band.rows]);
+        if made || !self.lens_is_there {
+            self.buffers.write(&self.device, Resource::Squares, &lens.squares)?;
+            self.buffers.write(&self.device, Resource::Places, &lens.places)?;
+            self.buffers.write(&self.device, Resource::Rays, &lens.rays)?;
+            self.lens_is_there = true;
+        }
+        Ok(())
+    }
+
     /// Records the passes of a band and sends them off.
     fn submit(
         &mut self,
@@ -446,6 +485,7 @@ impl State {
             clock: self.clock.as_mut(),
             encoder: &mut encoder,
             samples: list.samples,
+            lens: list.lens.is_some(),
             target: &target,
             triangles: self.packed.triangles[0],
         };

@@ -185,10 +185,19 @@ impl Packed {
     }
 }
 
+/// The plane behind a lens that the picture's triangles are set up in. Samples may lie anywhere in it.
+pub fn plane_target(view: &View, packed: &Packed) -> Target {
+    Target { first_row: 0, row_step_log2: 0, ..view_target(view, 1, packed, [0, view.height]) }
+}
+
 /// A band of the camera's picture: so many rows of pixels from one on.
 pub fn picture_target(list: &DrawList, packed: &Packed, first_y: u32, rows: u32) -> Target {
-    let View { width, height, fx, fy, cx, cy, near_m, .. } = list.view;
-    let (first_row, row_step_log2) = pattern::rows(list.samples);
+    view_target(&list.view, list.samples, packed, [first_y, rows])
+}
+
+fn view_target(view: &View, samples: u32, packed: &Packed, [first_y, rows]: [u32; 2]) -> Target {
+    let View { width, height, fx, fy, cx, cy, near_m, .. } = *view;
+    let (first_row, row_step_log2) = pattern::rows(samples);
     let mut target = Target {
         near_w: near_m,
         width,

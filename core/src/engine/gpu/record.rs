@@ -57,6 +57,8 @@ pub struct Recorder<'a> {
     pub clock: Option<&'a mut Clock>,
     pub encoder: &'a mut wgpu::CommandEncoder,
     pub samples: u32,
+    /// Whether the picture lies behind a lens.
+    pub lens: bool,
     pub target: &'a Target,
     /// Triangles of the picture before culling.
     pub triangles: u32,
@@ -150,6 +152,7 @@ impl Recorder<'_> {
         if groups.contains(&0) {
             return;
         }
+        let stage = if self.lens { stage.behind_lens() } else { stage };
         let timestamp_writes = self.clock.as_mut().map(|clock| {
             let first = 2 * clock.stages.len() as u32;
             clock.stages.push(stage);

@@ -17,6 +17,9 @@ pub enum Resource {
     /// [`super::abi::Target`] of the camera's picture, and of the sun's map.
     Target,
     SunTarget,
+    /// Likewise of the plane that the picture's triangles are set up in: the picture itself, or what
+    /// lies behind its lens.
+    Plane,
     VertexBatches,
     Batches,
     SunBatches,
@@ -44,6 +47,11 @@ pub enum Resource {
     Picture,
     Resolved,
     Sums,
+    /// See `shared/lens_tiles.wgsl`.
+    Squares,
+    /// Where the band's samples lie behind a lens, and rays through its pixels.
+    Places,
+    Rays,
 }
 
 /// How a stage uses a buffer.
@@ -76,6 +84,11 @@ pub enum Stage {
     Resolve,
     Reduce,
     Shade,
+    /// Behind a lens.
+    LensCount,
+    LensScatter,
+    LensRaster,
+    LensShade,
 }
 
 use super::reload::Sources;
@@ -85,7 +98,7 @@ use Resource as R;
 
 impl Stage {
     /// All stages in the order in which a frame runs them.
-    pub const ALL: [Self; 16] = [
+    pub const ALL: [Self; 20] = [
         Self::Skin,
         Self::Setup,
         Self::Clip,
@@ -102,7 +115,22 @@ impl Stage {
         Self::Resolve,
         Self::Reduce,
         Self::Shade,
+        Self::LensCount,
+        Self::LensScatter,
+        Self::LensRaster,
+        Self::LensShade,
     ];
+
+    /// What runs in its place behind a lens.
+    pub const fn behind_lens(self) -> Self {
+        match self {
+            Self::Count => Self::LensCount,
+            Self::Scatter => Self::LensScatter,
+            Self::Raster => Self::LensRaster,
+            Self::Shade => Self::LensShade,
+            other => other,
+        }
+    }
 
     /// The name in lists of times.
     pub const fn name(self) -> &'static str {
@@ -112,26 +140,34 @@ impl Stage {
             Self::Bound | Self::Fit => "shadow fit",
             Self::Project | Self::SunSetup | Self::SunClip => "shadow setup",
             Self::Shadow => "shadow raster",
-            Self::Count | Self::Scan | Self::Scatter => "bin",
-            Self::Raster => "raster",
+            Self::Count | Self::Scan | Self::Scatter | Self::LensCount | Self::LensScatter => "bin",
+            Self::Raster | Self::LensRaster => "raster",
             Self::Resolve => "resolve",
             Self::Reduce => "reduce",
-            Self::Shade => "shade",
+            Self::Shade | Self::LensShade => "shade",
         }
     }
 
     /// The shader's entry point.
     pub const fn entry(self) -> &'static str {
         match self {
-            Self::Count => "count",
-            Self::Scatter => "scatter",
+            Self::Count | Self::LensCount => "count",
+            Self::Scatter | Self::LensScatter => "scatter",
             _ => "main",
         }
     }
 
     /// Whether there is a form of it for each number of samples a pixel.
     pub const fn by_samples(self) -> bool {
-        matches!(self, Self::Raster | Self::Resolve | Self::Reduce | Self::Shade)
+        matches!(
+            self,
+            Self::Raster
+                | Self::Resolve
+                | Self::Reduce
+                | Self::Shade
+                | Self::LensRaster
+                | Self::LensShade
+        )
     }
 
     /// What stands at each binding.
@@ -139,7 +175,7 @@ impl Stage {
         match self {
             Self::Skin => &[
                 (R::Frame, Uniform),
-                (R::Target, Read),
+                (R::Plane, Read),
                 (R::VertexBatches, Read),
                 (R::Meshes, Read),
                 (R::Palette, Read),
@@ -149,7 +185,7 @@ impl Stage {
             ],
             Self::Setup => &[
                 (R::Frame, Uniform),
-                (R::Target, Read),
+                (R::Plane, Read),
                 (R::Batches, Read),
                 (R::Meshes, Read),
                 (R::Screen, Read),
@@ -170,7 +206,7 @@ impl Stage {
             ],
             Self::Clip => &[
                 (R::Frame, Uniform),
-                (R::Target, Read),
+                (R::Plane, Read),
                 (R::Batches, Read),
                 (R::Meshes, Read),
                 (R::Vertices, Read),
@@ -192,7 +228,7 @@ impl Stage {
             ],
             Self::Bound => &[
                 (R::Frame, Uniform),
-                (R::Target, Read),
+                (R::Plane, Read),
                 (R::VertexBatches, Read),
                 (R::Vertices, Read),
                 (R::Screen, Read),
@@ -220,6 +256,15 @@ impl Stage {
                 (R::Tiles, Write),
                 (R::Lists, Write),
             ],
+            Self::LensCount | Self::LensScatter => &[
+                (R::Frame, Uniform),
+                (R::Target, Read),
+                (R::Primitives, Write),
+                (R::Counters, Write),
+                (R::Tiles, Write),
+                (R::Lists, Write),
+                (R::Squares, Read),
+            ],
             Self::Scan => {
                 &[(R::Frame, Uniform), (R::Target, Read), (R::Tiles, Write), (R::Counters, Write)]
             }
@@ -231,6 +276,16 @@ impl Stage {
                 (R::Tiles, Read),
                 (R::Lists, Read),
                 (R::Samples, Write),
+            ],
+            Self::LensRaster => &[
+                (R::Frame, Uniform),
+                (R::Target, Read),
+                (R::Primitives, Read),
+                (R::Counters, Read),
+                (R::Tiles, Read),
+                (R::Lists, Read),
+                (R::Samples, Write),
+                (R::Places, Read),
             ],
             Self::Shadow => &[
                 (R::Frame, Uniform),
@@ -267,6 +322,20 @@ impl Stage {
                 (R::SunView, Uniform),
                 (R::ShadowMap, Read),
                 (R::Picture, Write),
+            ],
+            Self::LensShade => &[
+                (R::Frame, Uniform),
+                (R::Target, Uniform),
+                (R::Primitives, Read),
+                (R::Surfaces, Read),
+                (R::Vertices, Read),
+                (R::Samples, Read),
+                (R::Texels, Read),
+                (R::Lights, Uniform),
+                (R::SunView, Uniform),
+                (R::ShadowMap, Read),
+                (R::Picture, Write),
+                (R::Rays, Read),
             ],
         }
     }
@@ -317,15 +386,34 @@ impl Stage {
             Self::Clip | Self::SunClip => {
                 &[ABI, DOUBLE, WIDE, EDGE, PROJECT, BOUNDS, TRIANGLE, file!("clip.wgsl")]
             }
-            Self::Count | Self::Scatter => &[ABI, file!("bin.wgsl")],
+            Self::Count | Self::Scatter => &[ABI, file!("shared/tiles.wgsl"), file!("bin.wgsl")],
+            Self::LensCount | Self::LensScatter => {
+                &[ABI, WIDE, EDGE, file!("shared/lens_tiles.wgsl"), file!("bin.wgsl")]
+            }
             Self::Scan => &[ABI, file!("scan.wgsl")],
-            Self::Raster => &[ABI, WIDE, EDGE, RASTER, file!("raster.wgsl")],
+            Self::Raster => &[ABI, WIDE, EDGE, KEPT, RASTER, file!("raster.wgsl")],
+            Self::LensRaster => {
+                &[ABI, WIDE, EDGE, KEPT, file!("shared/lens_raster.wgsl"), file!("raster.wgsl")]
+            }
             Self::Shadow => &[ABI, WIDE, EDGE, file!("shadow.wgsl")],
             Self::Resolve => &[ABI, file!("resolve.wgsl")],
             Self::Reduce => &[ABI, file!("reduce.wgsl")],
             Self::Shade => &[
                 ABI,
                 file!("shared/texture.wgsl"),
+                file!("shared/ray.wgsl"),
+                file!("shared/surface.wgsl"),
+                file!("shared/material.wgsl"),
+                file!("shared/sunlight.wgsl"),
+                file!("shared/light.wgsl"),
+                file!("shared/develop.wgsl"),
+                file!("shared/display.wgsl"),
+                file!("shade.wgsl"),
+            ],
+            Self::LensShade => &[
+                ABI,
+                file!("shared/texture.wgsl"),
+                file!("shared/lens_ray.wgsl"),
                 file!("shared/surface.wgsl"),
                 file!("shared/material.wgsl"),
                 file!("shared/sunlight.wgsl"),
@@ -349,6 +437,7 @@ const PROJECT: File = file!("shared/project.wgsl");
 const BOUNDS: File = file!("shared/bounds.wgsl");
 const TRIANGLE: File = file!("shared/triangle.wgsl");
 const EDGE: File = file!("shared/edge.wgsl");
+const KEPT: File = file!("shared/kept.wgsl");
 const RASTER: File = file!("shared/raster.wgsl");
 
 /// Pixels of a tile of 64 that one invocation of `raster` owns: as many as its registers hold the

@@ -16,11 +16,11 @@ use super::samples::TILE;
 use super::simd::{F32x8, LANES, Vec3x8, kernel};
 
 use self::material::Look;
-use self::surface::Points;
+use self::surface::{Points, RaysThrough};
 
 pub(super) use light::Lighting;
 pub(super) use material::Surface;
-pub(super) use surface::{Geometry, Rays};
+pub(super) use surface::{Geometry, LensRays, Rays};
 
 /// How many times eight fragments go through the steps together: so that what a step needs of
 /// the material and the lights is set up once for all of them, its loop is short, and what lies
@@ -49,10 +49,12 @@ pub(super) struct DrawnSurface<'a> {
 }
 
 kernel! {
-    /// Shades the fragments of one draw.
-    fn shade(
+    /// Shades the fragments of one draw; `rays` are those of a lens where there is one, which `LENS`
+    /// says.
+    fn shade[const LENS: bool](
         stage: &Stage<'_>,
         drawn: DrawnSurface<'_>,
+        rays: Option<&[[f32; TILE * TILE]; 6]>,
         reaching: &[u32],
         fragments: &Bucket,
         color: &mut TileColor,
@@ -60,9 +62,10 @@ kernel! {
 }
 
 #[inline(always)]
-fn shade_body<const AVX2: bool>(
+fn shade_body<const AVX2: bool, const LENS: bool>(
     stage: &Stage<'_>,
     drawn: DrawnSurface<'_>,
+    rays: Option<&[[f32; TILE * TILE]; 6]>,
     reaching: &[u32],
     fragments: &Bucket,
     color: &mut TileColor,
@@ -76,7 +79,17 @@ fn shade_body<const AVX2: bool>(
     while first < groups {
         let count = GROUPS.min(groups - first);
         for (group, points) in points[..count].iter_mut().enumerate() {
-            *points = visible_points(stage, drawn, fragments, (first + group) * LANES);
+            let first = (first + group) * LANES;
+            *points = match rays {
+                Some(rays) if LENS => {
+                    let rays = surface::lens_rays(rays, fragments, first);
+                    visible_points::<AVX2, true>(stage, drawn, rays, fragments, first)
+                }
+                _ => {
+                    let rays = stage.rays.through(fragments, first);
+                    visible_points::<AVX2, false>(stage, drawn, rays, fragments, first)
+                }
+            };
         }
         let (points, looks, light) = (&points[..count], &mut looks[..count], &mut light[..count]);
         surface.look(points, looks);
@@ -92,16 +105,16 @@ fn shade_body<const AVX2: bool>(
 
 /// The surface under eight fragments, its normals turned to the viewer where that is wanted.
 #[inline(always)]
-fn visible_points<const AVX2: bool>(
+fn visible_points<const AVX2: bool, const LENS: bool>(
     stage: &Stage<'_>,
     drawn: DrawnSurface<'_>,
+    rays: RaysThrough<AVX2>,
     fragments: &Bucket,
     first: usize,
 ) -> Points<AVX2> {
     let ids = fragments.id[first..].first_chunk().expect("padded to a multiple of eight");
-    let at = [F32x8::load(&fragments.x[first..]), F32x8::load(&fragments.y[first..])];
     let textured = drawn.surface.textured();
-    let mut points = surface::points(&stage.geometry, &stage.rays, ids, at, textured);
+    let mut points = surface::points::<AVX2, LENS>(&stage.geometry, &rays, ids, textured);
     if drawn.double_sided {
         let turned = Vec3x8::ZERO - points.normal;
         let (away, towards) =

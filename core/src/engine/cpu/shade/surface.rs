@@ -7,7 +7,9 @@
 
 use crate::draw::abi::View;
 use crate::engine::cpu::chunk::{Chunk, Face, split_id};
+use crate::engine::cpu::fragment::Bucket;
 use crate::engine::cpu::project::Vertex;
+use crate::engine::cpu::samples::TILE;
 use crate::engine::cpu::simd::{F32x8, LANES, Mask8, Vec3x8, transposed};
 
 /// Triangles by id.
@@ -42,7 +44,7 @@ impl Rays {
 
     /// Directions through positions in the picture, view space, z = -1.
     #[inline(always)]
-    pub(in crate::engine::cpu) fn through<const AVX2: bool>(
+    pub(in crate::engine::cpu) fn directions<const AVX2: bool>(
         &self,
         [x, y]: [F32x8<AVX2>; 2],
     ) -> Vec3x8<AVX2> {
@@ -51,6 +53,62 @@ impl Rays {
             (y - F32x8::splat(self.center[1])) * F32x8::splat(self.step[1]),
             F32x8::splat(-1.0),
         )
+    }
+
+    /// Those through eight fragments.
+    #[inline(always)]
+    pub(super) fn through<const AVX2: bool>(
+        &self,
+        fragments: &Bucket,
+        first: usize,
+    ) -> RaysThrough<AVX2> {
+        let (x, y) = (F32x8::load(&fragments.x[first..]), F32x8::load(&fragments.y[first..]));
+        let [right, down] = self.step.map(F32x8::splat);
+        RaysThrough {
+            x: (x - F32x8::splat(self.center[0])) * right,
+            y: (y - F32x8::splat(self.center[1])) * down,
+            right: [right, F32x8::ZERO],
+            down: [F32x8::ZERO, down],
+        }
+    }
+}
+
+/// Rays through eight fragments, at z = -1, and how their x and y change over a pixel.
+#[derive(Clone, Copy)]
+pub(super) struct RaysThrough<const AVX2: bool> {
+    x: F32x8<AVX2>,
+    y: F32x8<AVX2>,
+    right: [F32x8<AVX2>; 2],
+    down: [F32x8<AVX2>; 2],
+}
+
+/// Rays through the pixels of a tile behind a lens.
+pub(in crate::engine::cpu) type LensRays = [[f32; TILE * TILE]; 6];
+
+/// Rays through eight fragments behind a lens, from those through the middle of their pixels.
+#[inline(always)]
+pub(super) fn lens_rays<const AVX2: bool>(
+    rays: &LensRays,
+    fragments: &Bucket,
+    first: usize,
+) -> RaysThrough<AVX2> {
+    let slots: &[u16; LANES] =
+        fragments.slot[first..].first_chunk().expect("padded to a multiple of eight");
+    let (at_x, at_y) = (F32x8::load(&fragments.x[first..]), F32x8::load(&fragments.y[first..]));
+    let half = F32x8::splat(0.5);
+    let (from_x, from_y) = (at_x - at_x.floor() - half, at_y - at_y.floor() - half);
+    let mut of_pixel = [F32x8::<AVX2>::ZERO; 6];
+    for (values, all) in of_pixel.iter_mut().zip(rays) {
+        for lane in 0..LANES {
+            values.0[lane] = all[usize::from(slots[lane]) & (all.len() - 1)];
+        }
+    }
+    let [x, y, x_right, x_down, y_right, y_down] = of_pixel;
+    RaysThrough {
+        x: x + x_right * from_x + x_down * from_y,
+        y: y + y_right * from_x + y_down * from_y,
+        right: [x_right, y_right],
+        down: [x_down, y_down],
     }
 }
 
@@ -154,14 +212,13 @@ fn vector<const AVX2: bool>(from: &[F32x8<AVX2>; LANES], first: usize) -> Vec3x8
 
 /// Finds the surface under eight fragments; `textured` as in [`Textured`].
 #[inline(always)]
-pub(super) fn points<const AVX2: bool>(
+pub(super) fn points<const AVX2: bool, const LENS: bool>(
     geometry: &Geometry<'_>,
-    rays: &Rays,
+    rays: &RaysThrough<AVX2>,
     ids: &[u32; LANES],
-    at: [F32x8<AVX2>; 2],
     textured: Textured,
 ) -> Points<AVX2> {
-    let ray = rays.through(at);
+    let ray = Vec3x8::new(rays.x, rays.y, F32x8::splat(-1.0));
     let triangles = Triangles::new(geometry, ids);
     let origin = vector(&triangles.origin, 0);
     let (edge1, edge2) = (vector(&triangles.edge1, 0), vector(&triangles.edge2, 0));
@@ -184,7 +241,8 @@ pub(super) fn points<const AVX2: bool>(
     let mut texture = TexturePoints::ZERO;
     if textured.coordinates {
         texture.uv = [u, v];
-        let change = barycentric_change([origin, edge1, edge2], rays, [raw1, raw2], inverse);
+        let triangle = [origin, edge1, edge2];
+        let change = barycentric_change::<AVX2, LENS>(triangle, rays, [raw1, raw2], inverse);
         change_uv(&triangles, change, &mut texture);
         if textured.directions {
             tangents(&triangles, &mut texture);
@@ -243,9 +301,9 @@ fn clamp_to_triangle<const AVX2: bool>(w1: F32x8<AVX2>, w2: F32x8<AVX2>) -> [F32
 /// Change of the second and third barycentric coordinate over a pixel to the right and a pixel
 /// down: numerators and determinant are linear in the ray.
 #[inline(always)]
-fn barycentric_change<const AVX2: bool>(
+fn barycentric_change<const AVX2: bool, const LENS: bool>(
     [origin, edge1, edge2]: [Vec3x8<AVX2>; 3],
-    rays: &Rays,
+    rays: &RaysThrough<AVX2>,
     at: [F32x8<AVX2>; 2],
     inverse: F32x8<AVX2>,
 ) -> [[F32x8<AVX2>; 2]; 2] {
@@ -255,7 +313,11 @@ fn barycentric_change<const AVX2: bool>(
     for k in 0..2 {
         let x = (numerators[k].x - at[k] * determinant.x) * inverse;
         let y = (numerators[k].y - at[k] * determinant.y) * inverse;
-        change[k] = [x * F32x8::splat(rays.step[0]), y * F32x8::splat(rays.step[1])];
+        change[k] = if LENS {
+            [x * rays.right[0] + y * rays.right[1], x * rays.down[0] + y * rays.down[1]]
+        } else {
+            [x * rays.right[0], y * rays.down[1]]
+        };
     }
     change
 }
