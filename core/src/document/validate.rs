@@ -1,8 +1,12 @@
 //! Which values of a document make sense: ranges, combinations and what a frame may hold at most.
 //!
-//! Form is [`super::check`]'s business, the rules for single parameters are in [`rules`].
+//! Form is [`super::check`]'s business, the rules for single parameters are in [`rules`], those for
+//! parameters that look at each other in [`links`].
+
+use std::collections::BTreeMap;
 
 mod cast;
+mod links;
 mod rules;
 
 pub(super) use cast::problems_of_member;
@@ -36,6 +40,25 @@ const BMI_KG_M2: Range = Range::from_to(10.0, 60.0);
 /// Everything in a document that makes no sense, in the order of its fields.
 #[must_use]
 pub fn validate(document: &Document) -> Vec<Problem> {
+    let Check { mut problems, params } = sections(document);
+    problems.extend(links::check(&params, &document.people));
+    problems
+}
+
+/// Every parameter of a document by its path; what says `"auto"` has none.
+#[must_use]
+pub fn params(document: &Document) -> BTreeMap<String, Param> {
+    sections(document).params
+}
+
+/// Those of them that others look at.
+#[must_use]
+pub fn linked(document: &Document) -> BTreeMap<String, Param> {
+    links::targets(&params(document))
+}
+
+/// Checks all sections, each for itself.
+fn sections(document: &Document) -> Check {
     let mut c = Check::default();
     let d = document;
     if d.version != VERSION {
@@ -60,7 +83,7 @@ pub fn validate(document: &Document) -> Vec<Problem> {
     labels(&mut c, &d.labels);
     output(&mut c, &d.output);
     quality(&mut c, &d.quality);
-    c.problems
+    c
 }
 
 fn image(c: &mut Check, image: &Image) {

@@ -2,10 +2,11 @@
 
 use glam::{DQuat, DVec3};
 
+use super::linked::{Draw, Draws, Place};
 use super::place::{OCCLUDERS, places};
 use super::value::{color, item, number, rotation, vector};
 use super::{Catalogue, keys};
-use crate::base::rng::{Draw, Draws, Key};
+use crate::base::rng::Key;
 use crate::document::{Choice, Color, Document, Param};
 use crate::scene::{Material, Object, Placement, Role, Shape};
 
@@ -14,6 +15,8 @@ const FLOOR_THICKNESS_M: f64 = 0.1;
 /// Sizes of the seed's primitives at scale 1: five inches, spheres six.
 const BASE_SIZE_M: f64 = 0.127;
 const SPHERE_SIZE_M: f64 = 0.1524;
+/// The lane of the materials of occluders; wall and floor have 1 and 2.
+const OCCLUDER_LANE: u16 = 0;
 
 pub(super) fn objects(document: &Document, catalogue: &Catalogue, draws: Draws) -> Vec<Object> {
     let surfaces = Surfaces { document, catalogue, draws };
@@ -27,7 +30,7 @@ pub(super) fn objects(document: &Document, catalogue: &Catalogue, draws: Draws) 
 struct Surfaces<'a> {
     document: &'a Document,
     catalogue: &'a Catalogue,
-    draws: Draws,
+    draws: Draws<'a>,
 }
 
 /// What a section says of its surface, with the keys of its values.
@@ -41,11 +44,11 @@ struct Finish<'a> {
 impl Surfaces<'_> {
     /// `place` keeps the materials of walls, floors and occluders apart.
     fn material(&self, finish: &Finish, slot: u32, place: u16) -> Material {
-        let of = |key| self.draws.of(key, slot);
+        let draws = self.draws.at(Place::Surface(slot, place));
+        let of = |key| draws.of(key, slot);
         let rules = &self.document.materials;
-        let rule = |param, key| {
-            number(param, self.draws.random_if(rules.enabled).of(key, slot).lane(place))
-        };
+        let rule =
+            |param, key| number(param, draws.random_if(rules.enabled).of(key, slot).lane(place));
         Material {
             texture: asset(finish.texture.0, &self.catalogue.textures, of(finish.texture.1)),
             base_color: color(finish.color.0, of(finish.color.1)),
@@ -110,7 +113,8 @@ impl Surfaces<'_> {
             uv_repeat: occluders.uv_repeat,
         };
         for (slot, base) in places(&occluders.placement, &OCCLUDERS, self.draws).points {
-            let of = |key| self.draws.of(key, slot);
+            let draws = self.draws.at(Place::Surface(slot, OCCLUDER_LANE));
+            let of = |key| draws.of(key, slot);
             let shape = *item(&occluders.shape, of(keys::OCCLUDER_SHAPE));
             let unit = if shape == Shape::Sphere { SPHERE_SIZE_M } else { BASE_SIZE_M };
             let size = unit * number(&occluders.scale, of(keys::OCCLUDER_SCALE));
@@ -125,7 +129,7 @@ impl Surfaces<'_> {
                     rotation: turn,
                     scale: DVec3::splat(size),
                 },
-                material: self.material(&finish, slot, 0),
+                material: self.material(&finish, slot, OCCLUDER_LANE),
             });
         }
     }

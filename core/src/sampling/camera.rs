@@ -3,8 +3,8 @@
 use glam::DVec3;
 
 use super::keys;
+use super::linked::Draws;
 use super::value::{number, rotation, vector};
-use crate::base::rng::Draws;
 use crate::document::Document;
 use crate::scene::Camera;
 

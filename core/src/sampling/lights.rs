@@ -3,15 +3,15 @@
 use glam::{DQuat, DVec3};
 
 use super::keys;
+use super::linked::Draws;
 use super::value::{color, flag, number, vector};
 use crate::base::math::rotation_from_euler_deg;
-use crate::base::rng::Draws;
 use crate::document;
 use crate::document::{MovingLight, SunDirection};
 use crate::scene::{Environment, Lights, PointLight, Sun};
 
 /// The slot of the moving lamp among the lamps, beyond all that a document may list.
-const MOVING: u32 = 1 << 16;
+pub(super) const MOVING: u32 = 1 << 16;
 
 pub(super) fn lights(lights: &document::Lights, draws: Draws) -> Lights {
     let mut points = Vec::new();

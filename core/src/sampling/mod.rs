@@ -6,11 +6,11 @@
 
 use std::sync::Arc;
 
-use crate::base::rng::Draws;
 use crate::document::cast::Member;
-use crate::document::{Choice, Document, Problem, file::Problems, validate};
+use crate::document::{Choice, Distribution, Document, Problem, file::Problems, params, validate};
 use crate::scene::{Person, Scene};
 
+mod address;
 mod background;
 mod body;
 mod camera;
@@ -19,6 +19,7 @@ mod expression;
 mod growth;
 mod keys;
 mod lights;
+mod linked;
 mod look;
 mod outfit;
 mod outfit_table;
@@ -31,7 +32,7 @@ mod quantile;
 mod style;
 mod value;
 
-pub use value::number;
+use linked::{Draws, Links};
 
 /// The names of all assets that a document may use, each list in a stable order: it is part of
 /// what a seed means.
@@ -90,6 +91,7 @@ pub struct Sampler {
     document: Arc<Document>,
     catalogue: Catalogue,
     faces: Vec<look::FaceShape>,
+    links: Links,
 }
 
 impl Sampler {
@@ -107,7 +109,8 @@ impl Sampler {
             return Err(SampleError::Assets(Problems(problems)));
         }
         let faces = look::face_shapes(&catalogue.face_targets);
-        Ok(Self { document, catalogue, faces })
+        let links = Links::new(&document);
+        Ok(Self { document, catalogue, faces, links })
     }
 
     /// The document.
@@ -119,8 +122,8 @@ impl Sampler {
     /// One frame. It depends on the document and the catalogue alone.
     #[must_use]
     pub fn scene(&self, frame: u32) -> Scene {
-        let Self { document, catalogue, faces } = self;
-        let draws = Draws::new(document.seed, frame);
+        let Self { document, catalogue, faces, links } = self;
+        let draws = Draws::linked(document.seed, frame, links);
         Scene {
             frame,
             seed: document.seed,
@@ -138,19 +141,19 @@ impl Sampler {
     /// Everybody who recurs over the frames, in the order of their ids, as the config could list
     /// them; nobody where nobody recurs. What an `each` sets is that of the slot of the same number.
     pub fn members(&self) -> impl ExactSizeIterator<Item = Member> {
-        let Self { document, catalogue, faces } = self;
+        let Self { document, catalogue, faces, links } = self;
         let count = document.people.identity_count().unwrap_or(0);
-        (0..count)
-            .map(move |id| people::member(&document.people, catalogue, faces, document.seed, id))
+        let of = move |id| Draws::linked(document.seed, id, links);
+        (0..count).map(move |id| people::member(&document.people, catalogue, faces, of(id), id))
     }
 
     /// Everybody who stands in a frame, by their instance ids (slot plus one), as the config could
     /// list them.
     #[must_use]
     pub fn members_of_frame(&self, frame: u32) -> Vec<(u32, Member)> {
-        let Self { document, catalogue, faces } = self;
-        let people =
-            people::people(&document.people, catalogue, faces, Draws::new(document.seed, frame));
+        let Self { document, catalogue, faces, links } = self;
+        let draws = Draws::linked(document.seed, frame, links);
+        let people = people::people(&document.people, catalogue, faces, draws);
         let member = |p: Person| {
             let what = (&p.body, &p.look, &p.outfit);
             (p.slot + 1, cast::member(p.name.as_deref(), what, &cast::dyed(&p.outfit), catalogue))
@@ -162,7 +165,8 @@ impl Sampler {
 /// How many people and occluders a frame holds. The document must be valid.
 #[must_use]
 pub fn counts(document: &Document, frame: u32) -> Counts {
-    let draws = Draws::new(document.seed, frame);
+    let links = Links::new(document);
+    let draws = Draws::linked(document.seed, frame, &links);
     let (people, people_wanted) = if document.people.enabled {
         let places = place::places(&document.people.placement, &place::PEOPLE, draws);
         (places.points.len() as u32, places.wanted)
@@ -196,7 +200,7 @@ pub fn check_assets(document: &Document, catalogue: &Catalogue) -> Vec<Problem> 
         (people.enabled, "people.wardrobe.bottom.pattern", &bottom.pattern, patterns),
         (people.enabled, "people.wardrobe.outer.pattern", &outer.pattern, patterns),
     ];
-    let mut problems = Vec::new();
+    let mut problems = unread(document);
     for (enabled, path, choice, (kind, known, none_allowed)) in all {
         if enabled {
             check_choice(path, choice, kind, known, none_allowed, &mut problems);
@@ -212,6 +216,15 @@ pub fn check_assets(document: &Document, catalogue: &Catalogue) -> Vec<Problem> 
         }
     }
     problems
+}
+
+/// Tables that nobody has read.
+fn unread(document: &Document) -> Vec<Problem> {
+    let params = params(document);
+    let laws = params.iter().flat_map(|(path, param)| param.laws(path));
+    let tables = laws.filter(|(_, law)| matches!(law, Distribution::Empirical(_)));
+    let what = "the file was not read; load the config from its own file";
+    tables.map(|(path, _)| Problem::new(format!("{path}.empirical"), what)).collect()
 }
 
 /// Clips and poses share one set of ids.

@@ -2,11 +2,12 @@
 
 use glam::DVec3;
 
+use super::linked::{Draw, Draws, Place, Somebody, Spot};
 use super::look::FaceShape;
 use super::place::{PEOPLE, places};
 use super::value::{number, rotation};
 use super::{Catalogue, body, cast, keys, look, outfit, pose};
-use crate::base::rng::{Draw, Draws, Key};
+use crate::base::rng::{self, Key};
 use crate::document::{self, cast::Member};
 use crate::scene::{Body, Look, Outfit, Person, Placement, Sex};
 
@@ -22,21 +23,28 @@ pub(super) fn people(
     let company = Company { people, catalogue, faces };
     let places = places(&people.placement, &PEOPLE, draws).points;
     let identities = people.identity_count().map(|count| Identities::new(count, draws));
+    let nobody = Member::default();
     let person = |(slot, position_m)| {
-        let here = Source::new(draws, slot);
         let identity = identities.map(|i| i.of_slot(slot));
+        let known = identity.and_then(|id| company.listed(id)).unwrap_or(&nobody);
+        let here = Spot { draws: draws.keyed(), slot, turn: slot };
         // Whoever recurs has the numbers of an identity instead of those of a frame.
-        let lasting = identity.map_or(here, |id| Source::of_identity(draws.seed(), id, slot));
-        let (body, look, outfit) = company.person(identity, lasting, here);
-        let turn = draws.of(keys::PERSON_ROTATION, slot);
+        let lasting = identity.map_or(here, |id| of_identity(draws.seed(), id, slot));
+        let draws = draws.at(Place::Person(Somebody { here, lasting, known }));
+        let [here, lasting] = [here, lasting].map(|spot| Source { draws, spot });
+        let (body, look, outfit) = company.person(known, lasting, here);
         Person {
             slot,
             identity,
-            name: identity.and_then(|id| company.listed(id)).and_then(|m| m.name.clone()),
+            name: known.name.clone(),
             placement: Placement {
                 position_m,
-                rotation: rotation(&people.rotation_deg, DVec3::ZERO, turn),
-                scale: DVec3::splat(number(&people.scale, draws.of(keys::PERSON_SCALE, slot))),
+                rotation: rotation(
+                    &people.rotation_deg,
+                    DVec3::ZERO,
+                    here.of(keys::PERSON_ROTATION),
+                ),
+                scale: DVec3::splat(number(&people.scale, here.of(keys::PERSON_SCALE))),
             },
             body,
             look,
@@ -52,14 +60,16 @@ pub(super) fn member(
     people: &document::People,
     catalogue: &Catalogue,
     faces: &[FaceShape],
-    seed: u64,
+    draws: Draws,
     id: u32,
 ) -> Member {
     let company = Company { people, catalogue, faces };
-    let lasting = Source::of_identity(seed, id, id);
-    let (body, look, outfit) = company.person(Some(id), lasting, lasting);
     let nobody = Member::default();
     let known = company.listed(id).unwrap_or(&nobody);
+    let spot = of_identity(draws.seed(), id, id);
+    let draws = draws.at(Place::Person(Somebody { here: spot, lasting: spot, known }));
+    let lasting = Source { draws, spot };
+    let (body, look, outfit) = company.person(known, lasting, lasting);
     // Colours and patterns that are drawn do not last.
     let what = (&body, &look, &outfit);
     cast::member(known.name.as_deref(), what, &known.wardrobe, catalogue)
@@ -79,10 +89,8 @@ impl<'a> Company<'a> {
     }
 
     /// Body, look and clothes of somebody.
-    fn person(self, identity: Option<u32>, lasting: Source, here: Source) -> (Body, Look, Outfit) {
+    fn person(self, known: &Member, lasting: Source, here: Source) -> (Body, Look, Outfit) {
         let Self { people, catalogue, faces } = self;
-        let nobody = Member::default();
-        let known = identity.and_then(|id| self.listed(id)).unwrap_or(&nobody);
         let body = body::body(&people.body, &known.body, lasting.random_if(people.body.enabled));
         let traits = PersonTraits::new(&body);
         let look = look::look(&people.look, &known.look, faces, traits, lasting);
@@ -93,31 +101,31 @@ impl<'a> Company<'a> {
     }
 }
 
-/// Where a person's random numbers come from: a slot of the frame, or what lasts over frames.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Source {
-    draws: Draws,
-    slot: u32,
-    /// The slot of the frame, whatever the numbers are keyed by.
-    turn: u32,
+/// What an identity is drawn from, in a slot.
+const fn of_identity(seed: u64, id: u32, turn: u32) -> Spot {
+    Spot { draws: rng::Draws::new(seed, id), slot: 0, turn }
 }
 
-impl Source {
-    pub(super) const fn new(draws: Draws, slot: u32) -> Self {
-        Self { draws, slot, turn: slot }
-    }
+/// Where a person's random numbers come from: a slot of the frame, or what lasts over frames.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Source<'a> {
+    draws: Draws<'a>,
+    spot: Spot,
+}
 
-    /// What an identity is drawn from, in a slot.
-    const fn of_identity(seed: u64, id: u32, turn: u32) -> Self {
-        Self { turn, ..Self::new(Draws::new(seed, id), 0) }
+impl<'a> Source<'a> {
+    /// Of a slot of a frame, for somebody of whom nothing is known.
+    #[cfg(test)]
+    pub(super) const fn new(draws: Draws<'a>, slot: u32) -> Self {
+        Self { draws, spot: Spot { draws: draws.keyed(), slot, turn: slot } }
     }
 
     pub(super) const fn random_if(self, random: bool) -> Self {
-        Self { draws: self.draws.random_if(random), ..self }
+        Self { spot: self.spot.random_if(random), ..self }
     }
 
-    pub(super) const fn of(self, key: Key) -> Draw {
-        self.draws.of(key, self.slot).in_turn(self.turn)
+    pub(super) const fn of(self, key: Key) -> Draw<'a> {
+        self.draws.draw(self.spot.of(key))
     }
 }
 

@@ -5,9 +5,10 @@ use std::collections::BTreeMap;
 use glam::DVec3;
 
 use super::keys;
+use super::linked::Draws;
 use super::poisson_disk::poisson_disk;
 use super::value::number;
-use crate::base::rng::{Draws, Key};
+use crate::base::rng::Key;
 use crate::document::{Grid, GridPlane, Ground, Placement, PoissonDisk, Row};
 
 /// Tries to find room on the ground before a slot stays empty.
