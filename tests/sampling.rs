@@ -553,3 +553,55 @@ fn outfits_that_make_no_sense_are_refused() {
     let ages = problem(r#"[{"age_years": [9, 3], "top": "shirt", "bottom": "jeans"}]"#);
     assert!(ages.contains("people.wardrobe.outfit[0].age_years"), "{ages}");
 }
+
+#[test]
+fn people_face_what_they_should() {
+    let mut document = preset("everyday");
+    for (law, point) in [
+        (r#"{"facing": {"towards": "camera", "yaw_deg": 0}}"#, None),
+        (r#"{"facing": {"towards": [1, 2, -30]}}"#, Some(glam::DVec3::new(1.0, 2.0, -30.0))),
+    ] {
+        document.people.rotation_deg = serde_json::from_str(law).expect("a rotation");
+        for frame in 0..20 {
+            let scene = scene(&document, frame);
+            for p in &scene.people {
+                let front = p.placement.rotation * glam::DVec3::Z;
+                let way = point.unwrap_or(scene.camera.position_m) - p.placement.position_m;
+                let level = glam::DVec3::new(way.x, 0.0, way.z).normalize();
+                assert!(front.distance(level) < 1e-9, "{law}, frame {frame}: {front} {level}");
+            }
+        }
+    }
+    let refused =
+        r#"{"version": 1, "camera": {"rotation_deg": {"facing": {"towards": "camera"}}}}"#;
+    let problems = file::parse(refused).expect_err("no camera faces itself").to_string();
+    assert!(problems.starts_with("camera.rotation_deg.facing: only people"), "{problems}");
+}
+
+/// Discs within the boxes of people and upright cubes lie apart on the ground, and nobody moves.
+#[test]
+fn occluders_keep_out_of_people() {
+    let mut document = preset("everyday");
+    document.occluders.shape = Choice::Always(figurant_core::scene::Shape::Cube);
+    let clashes = |document: &Document| {
+        let clash = |s: &Scene| {
+            let cubes = s.objects.iter().filter(|o| o.role == Role::Occluder);
+            let near = |o: &figurant_core::scene::Object| {
+                let reach = 0.3 + 0.5 * o.placement.scale.x;
+                let away = |p: &Person| (p.placement.position_m - o.placement.position_m) * LEVEL;
+                s.people.iter().any(|p| away(p).length() < reach)
+            };
+            cubes.filter(|o| near(o)).count()
+        };
+        (0..60).map(|frame| clash(&scene(document, frame))).sum::<usize>()
+    };
+    const LEVEL: glam::DVec3 = glam::DVec3::new(1.0, 0.0, 1.0);
+    let mut apart = document.clone();
+    let figurant_core::document::Placement::Ground(ground) = &mut apart.occluders.placement else {
+        panic!("everyday has its occluders on the ground");
+    };
+    ground.no_overlap = true;
+    assert!(clashes(&document) > 5);
+    assert_eq!(clashes(&apart), 0);
+    assert_eq!(scene(&document, 7).people, scene(&apart, 7).people);
+}

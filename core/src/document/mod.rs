@@ -54,8 +54,8 @@ pub use post::Post;
 pub use scope::Scope;
 pub use validate::{MAX_OBJECTS, MAX_PEOPLE, linked, params, validate};
 pub use vector::{
-    BoxRegion, Color, ColorLaw, GridRegion, JointRotation, Region, Rotation, RotationLaw, Round,
-    Vector,
+    BoxRegion, CameraWord, Color, ColorLaw, Facing, GridRegion, JointRotation, Region, Rotation,
+    RotationLaw, Round, Towards, Vector,
 };
 pub use wardrobe::{Bottom, Outer, OutfitRow, Season, Shoes, Top, Wardrobe};
 

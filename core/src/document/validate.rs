@@ -13,9 +13,9 @@ pub(super) use cast::problems_of_member;
 use rules::{Check, Range};
 
 use super::{
-    Ancestry, Auto, Background, Body, Camera, Document, Environment, Image, Labels, Lights, Look,
-    MovingLight, Occluders, OutfitRow, Output, Param, People, Placement, PointLight, Pose, Post,
-    Problem, Quality, Scheme, Sun, SunDirection, VERSION, Wardrobe,
+    Ancestry, Auto, Background, Body, Camera, Document, Environment, Image, JointRotation, Labels,
+    Lights, Look, MovingLight, Occluders, OutfitRow, Output, Param, People, Placement, PointLight,
+    Pose, Post, Problem, Quality, Rotation, Scheme, Sun, SunDirection, VERSION, Wardrobe,
 };
 
 /// People in a frame at most.
@@ -100,6 +100,10 @@ fn camera(c: &mut Check, camera: &Camera) {
     c.param("camera.fov_vertical_deg", &camera.fov_vertical_deg, Range::from_to(0.1, 179.0));
     c.vector("camera.position_m", &camera.position_m, POSITION);
     c.vector("camera.position_offset_m", &camera.position_offset_m, POSITION);
+    if let Rotation::Joint(JointRotation::Facing(_)) = &camera.rotation_deg {
+        let what = "only people and occluders can face something; give Euler angles";
+        c.report("camera.rotation_deg.facing", what);
+    }
     c.rotation("camera.rotation_deg", &camera.rotation_deg);
     c.axes("camera.rotation_offset_deg", &camera.rotation_offset_deg, ANGLE);
     c.number("camera.near_m", camera.near_m, Range::from_to(1e-4, 1e3));
@@ -211,6 +215,10 @@ fn placement(c: &mut Check, path: &str, placement: &Placement, limit: u32) {
             let area = c.interval(&at("x_m"), disk.x_m, POSITION)
                 & c.interval(&at("y_m"), disk.y_m, POSITION);
             c.param(&at("depth_m"), &disk.depth_m, POSITION);
+            if let Some(count) = &disk.count {
+                c.param(&at("count"), count, Range::from_to(0.0, f64::from(limit)));
+            }
+            c.number(&at("in_view"), disk.in_view, SHARE);
             if c.number(&at("separation_m"), disk.separation_m, Range::above(0.0, 1e6)) && area {
                 let (w, h) = (disk.x_m[1] - disk.x_m[0], disk.y_m[1] - disk.y_m[0]);
                 let most = most_points(w, h, disk.separation_m);
@@ -227,6 +235,7 @@ fn placement(c: &mut Check, path: &str, placement: &Placement, limit: u32) {
             let area = c.interval(&at("x_m"), ground.x_m, POSITION)
                 & c.interval(&at("z_m"), ground.z_m, POSITION);
             c.number(&at("y_m"), ground.y_m, POSITION);
+            c.number(&at("in_view"), ground.in_view, SHARE);
             let count = c.param(&at("count"), &ground.count, Range::from_to(0.0, f64::from(limit)));
             let separation =
                 c.number(&at("separation_m"), ground.separation_m, Range::from_to(0.0, 1e6));

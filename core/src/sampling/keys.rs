@@ -137,6 +137,10 @@ keys! {
     SATURATION = "post.saturation",
     GRAIN = "post.grain",
     GRAIN_NOISE = "post.grain.noise",
+    PERSON_CHOSEN = "people.placement.chosen",
+    PERSON_IN_VIEW = "people.placement.in_view",
+    OCCLUDER_CHOSEN = "occluders.placement.chosen",
+    OCCLUDER_IN_VIEW = "occluders.placement.in_view",
 }
 
 #[cfg(test)]

@@ -29,6 +29,7 @@ mod poisson_disk;
 mod pose;
 mod post;
 mod quantile;
+mod solid;
 mod style;
 mod value;
 
@@ -124,15 +125,16 @@ impl Sampler {
     pub fn scene(&self, frame: u32) -> Scene {
         let Self { document, catalogue, faces, links } = self;
         let draws = Draws::linked(document.seed, frame, links);
+        let camera = camera::camera(document, draws);
         Scene {
             frame,
             seed: document.seed,
-            camera: camera::camera(document, draws),
+            camera,
             lights: lights::lights(&document.lights, draws),
             exposure_ev100: post::exposure_ev100(&document.post, draws),
             post: post::post(&document.post, draws),
-            objects: background::objects(document, catalogue, draws),
-            people: people::people(&document.people, catalogue, faces, draws),
+            objects: background::objects(document, catalogue, draws, &camera),
+            people: people::people(&document.people, catalogue, faces, draws, &camera),
         }
     }
 }
@@ -153,7 +155,8 @@ impl Sampler {
     pub fn members_of_frame(&self, frame: u32) -> Vec<(u32, Member)> {
         let Self { document, catalogue, faces, links } = self;
         let draws = Draws::linked(document.seed, frame, links);
-        let people = people::people(&document.people, catalogue, faces, draws);
+        let camera = camera::camera(document, draws);
+        let people = people::people(&document.people, catalogue, faces, draws, &camera);
         let member = |p: Person| {
             let what = (&p.body, &p.look, &p.outfit);
             (p.slot + 1, cast::member(p.name.as_deref(), what, &cast::dyed(&p.outfit), catalogue))
@@ -167,19 +170,15 @@ impl Sampler {
 pub fn counts(document: &Document, frame: u32) -> Counts {
     let links = Links::new(document);
     let draws = Draws::linked(document.seed, frame, &links);
-    let (people, people_wanted) = if document.people.enabled {
-        let places = place::places(&document.people.placement, &place::PEOPLE, draws);
-        (places.points.len() as u32, places.wanted)
-    } else {
-        (0, 0)
-    };
-    let (occluders, occluders_wanted) = if document.occluders.enabled {
-        let places = place::places(&document.occluders.placement, &place::OCCLUDERS, draws);
-        (places.points.len() as u32, places.wanted)
-    } else {
-        (0, 0)
-    };
-    Counts { people_wanted, people, occluders_wanted, occluders }
+    let camera = camera::camera(document, draws);
+    let people = people::Standing::new(&document.people, draws, &camera).places();
+    let occluders = background::occluder_places(document, draws, &camera);
+    Counts {
+        people_wanted: people.wanted,
+        people: people.points.len() as u32,
+        occluders_wanted: occluders.wanted,
+        occluders: occluders.points.len() as u32,
+    }
 }
 
 /// The ids in a document that a catalogue does not hold, and wishes for `"any"` asset of a kind

@@ -10,7 +10,8 @@ use super::quantile;
 use crate::base::color::linear_rgb;
 use crate::base::math::rotation_from_euler_deg;
 use crate::document::{
-    Chance, Choice, Color, ColorLaw, Distribution, Flag, Param, Region, Rotation, Vector, Weighted,
+    Chance, Choice, Color, ColorLaw, Distribution, Flag, JointRotation, Param, Region, Rotation,
+    Towards, Vector, Weighted,
 };
 
 /// The lane in which colours choose among their parts; below it are their channels.
@@ -129,11 +130,31 @@ pub(super) fn rotation(rotation: &Rotation, offset_deg: DVec3, draw: Draw) -> DQ
     let euler = |a: DVec3| rotation_from_euler_deg(a.x, a.y, a.z);
     match rotation {
         Rotation::Euler(params) => euler(axes(params, draw) + offset_deg),
+        Rotation::Joint(JointRotation::Facing(facing)) => {
+            euler(offset_deg + DVec3::Y * number(&facing.yaw_deg, draw))
+        }
         Rotation::Joint(_) if draw.is_middle() => euler(offset_deg),
-        Rotation::Joint(_) => {
+        Rotation::Joint(JointRotation::Rotation(_)) => {
             uniform_rotation([0, 1, 2].map(|i| draw.lane(i).uniform())) * euler(offset_deg)
         }
     }
+}
+
+/// The orientation of what stands somewhere. What faces something is turned about the vertical so that
+/// its +Z points there; straight above or below there is no such turn, and it stays as it is.
+pub(super) fn rotation_at(law: &Rotation, position_m: DVec3, camera_m: DVec3, draw: Draw) -> DQuat {
+    let towards_deg = match law {
+        Rotation::Joint(JointRotation::Facing(facing)) => {
+            let target = match facing.towards {
+                Towards::Camera(_) => camera_m,
+                Towards::Point(point) => DVec3::from_array(point),
+            };
+            let way = target - position_m;
+            libm::atan2(way.x, way.z).to_degrees()
+        }
+        Rotation::Euler(_) | Rotation::Joint(JointRotation::Rotation(_)) => 0.0,
+    };
+    rotation(law, DVec3::Y * towards_deg, draw)
 }
 
 /// Uniform on SO(3) from three uniform numbers (Shoemake, "Uniform random rotations", Graphics

@@ -2,9 +2,10 @@
 
 use std::collections::BTreeMap;
 
+use super::{ANGLE, POSITION};
 use crate::document::{
-    Chance, Choice, Color, ColorLaw, Distribution, Empirical, Flag, Given, Param, Problem, Region,
-    Rotation, Vector, Weighted,
+    Chance, Choice, Color, ColorLaw, Distribution, Empirical, Flag, Given, JointRotation, Param,
+    Problem, Region, Rotation, Towards, Vector, Weighted,
 };
 
 /// Mixtures of mixtures of mixtures... end here.
@@ -344,8 +345,18 @@ impl Check {
 
     pub(super) fn rotation(&mut self, path: &str, rotation: &Rotation) -> bool {
         match rotation {
-            Rotation::Euler(axes) => self.axes(path, axes, Range::from_to(-3600.0, 3600.0)),
-            Rotation::Joint(_) => true,
+            Rotation::Euler(axes) => self.axes(path, axes, ANGLE),
+            Rotation::Joint(JointRotation::Rotation(_)) => true,
+            Rotation::Joint(JointRotation::Facing(facing)) => {
+                let path = format!("{path}.facing");
+                let there = match &facing.towards {
+                    Towards::Camera(_) => true,
+                    Towards::Point(point) => {
+                        self.numbers(&format!("{path}.towards"), point, POSITION)
+                    }
+                };
+                self.param(&format!("{path}.yaw_deg"), &facing.yaw_deg, ANGLE) & there
+            }
         }
     }
 
