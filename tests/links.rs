@@ -48,6 +48,9 @@ fn base() -> Value {
         ("people.pose.blend.share", share.clone()),
         ("people.pose.variation", share),
         ("background.floor.enabled", json!(true)),
+        ("lights.sun.temperature_k", json!({"uniform": [2500, 9000]})),
+        ("lights.moving.temperature_k", json!({"uniform": [2500, 9000]})),
+        ("output.jpeg_quality", json!({"uniform": [60, 95]})),
     ] {
         set(&mut value, path, law);
     }
@@ -57,7 +60,13 @@ fn base() -> Value {
 /// Puts a value at a path such as `lights.points[2].color.hsv[1]`.
 fn set(value: &mut Value, path: &str, new: Value) {
     let pointer = path.replace('[', ".").replace(']', "").replace('.', "/");
-    *value.pointer_mut(&format!("/{pointer}")).unwrap_or_else(|| panic!("no {path}")) = new;
+    let (parent, name) =
+        format!("/{pointer}").rsplit_once('/').map(|(p, n)| (p.to_owned(), n.to_owned())).unwrap();
+    match value.pointer_mut(&parent).unwrap_or_else(|| panic!("no {path}")) {
+        Value::Array(items) => items[name.parse::<usize>().unwrap()] = new,
+        // Fields that may be absent are.
+        parent => parent[name] = new,
+    }
 }
 
 fn with(changes: &[(&str, Value)]) -> Document {
@@ -152,8 +161,8 @@ fn what_is_seen_is_what_is_drawn() {
         let table = json!([[low, middle, 0.25], [middle, high, 0.75]]);
         let link = json!({"given": {"of": path, "table": table}});
         let [a, b, linked] = [
-            with(&[(path, json!(low))]),
-            with(&[(path, json!(high))]),
+            with(&[(path, json!({"choice": [[low, 1]]}))]),
+            with(&[(path, json!({"choice": [[high, 1]]}))]),
             with(&[(path, drawn), (holder, link)]),
         ]
         .map(|document| sampler(&document));

@@ -605,3 +605,35 @@ fn occluders_keep_out_of_people() {
     assert_eq!(clashes(&apart), 0);
     assert_eq!(scene(&document, 7).people, scene(&apart, 7).people);
 }
+
+#[test]
+fn lenses_temperatures_and_qualities_are_drawn_and_move_nothing_else() {
+    let base = preset("peoplesanspeople");
+    let mut document = base.clone();
+    document.camera.focal_length_mm = Some(Param::uniform(20.0, 60.0));
+    document.lights.sun.temperature_k = Some(Param::uniform(2000.0, 10_000.0));
+    document.lights.points[1].temperature_k = Some(2700.0.into());
+    document.output.jpeg_quality = Param::uniform(60.0, 95.0);
+    let mut seen = (Vec::new(), Vec::new());
+    for frame in 0..100 {
+        let (mut a, b) = (scene(&document, frame), scene(&base, frame));
+        assert_eq!(b.jpeg_quality, None);
+        seen.0.push(a.camera.fov_vertical_deg);
+        seen.1.push(f64::from(a.jpeg_quality.take().expect("it is drawn")));
+        let luminance = |c: [f64; 3]| 0.2126 * c[0] + 0.7152 * c[1] + 0.0722 * c[2];
+        let (warm, plain) = (
+            a.lights.sun.as_ref().expect("a sun").color,
+            b.lights.sun.as_ref().expect("a sun").color,
+        );
+        assert_ne!(warm, plain);
+        // The product with a tint keeps the luminance of white alone.
+        assert!((luminance(warm) / luminance(plain) - 1.0).abs() < 0.15, "{warm:?} {plain:?}");
+        a.camera.fov_vertical_deg = b.camera.fov_vertical_deg;
+        a.lights = b.lights.clone();
+        assert_eq!(a, b, "frame {frame}");
+    }
+    let within = |all: &[f64], low: f64, high: f64| all.iter().all(|v| (low..=high).contains(v));
+    // 2 atan(12 / 60) and 2 atan(12 / 20).
+    assert!(within(&seen.0, 22.6, 61.93) && within(&seen.1, 60.0, 95.0), "{seen:?}");
+    assert!(!within(&seen.0, 25.0, 58.0) && !within(&seen.1, 63.0, 92.0), "{seen:?}");
+}

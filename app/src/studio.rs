@@ -8,7 +8,7 @@ use figurant_core::document::cast::Member;
 use figurant_core::document::file::{self, FileError};
 use figurant_core::document::import::{self, ImportError};
 use figurant_core::document::settle::{Settled, Source, SourceKind, read_all};
-use figurant_core::document::{self, Document, ImageFormat, presets};
+use figurant_core::document::{self, Document, ImageFormat, Param, presets};
 use figurant_core::draw::Cast;
 use figurant_core::engine::Engine;
 use figurant_core::engine::cpu::{CpuEngine, CpuOptions, SimdChoice};
@@ -344,7 +344,11 @@ fn info(
         height: document.image.height,
         outputs: document.output.outputs.clone(),
         picture: match document.output.image_format {
-            ImageFormat::Jpeg => PictureFormat::Jpeg(document.output.jpeg_quality),
+            // One that is drawn comes with each frame.
+            ImageFormat::Jpeg => match document.output.jpeg_quality {
+                Param::Constant(quality) => PictureFormat::Jpeg(quality.round() as u8),
+                Param::Random(_) => PictureFormat::DEFAULT,
+            },
             ImageFormat::Png => PictureFormat::Png,
         },
         assets: of_library.chain(of_config).collect(),

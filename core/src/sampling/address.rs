@@ -40,11 +40,13 @@ const LAMP: &[(&str, Key)] = &[
     ("position_offset_m", keys::LAMP_POSITION_OFFSET),
     ("intensity_cd", keys::LAMP_INTENSITY),
     ("color", keys::LAMP_COLOR),
+    ("temperature_k", keys::LAMP_TEMPERATURE),
 ];
 
 /// Of everything else.
 const PARAMS: &[(&str, Key)] = &[
     ("camera.fov_vertical_deg", keys::CAMERA_FOV),
+    ("camera.focal_length_mm", keys::CAMERA_FOCAL_LENGTH),
     ("camera.position_m", keys::CAMERA_POSITION),
     ("camera.position_offset_m", keys::CAMERA_POSITION_OFFSET),
     ("camera.rotation_deg", keys::CAMERA_ROTATION),
@@ -56,6 +58,7 @@ const PARAMS: &[(&str, Key)] = &[
     ("lights.sun.direction.elevation_deg", keys::SUN_ELEVATION),
     ("lights.sun.illuminance_lux", keys::SUN_ILLUMINANCE),
     ("lights.sun.color", keys::SUN_COLOR),
+    ("lights.sun.temperature_k", keys::SUN_TEMPERATURE),
     ("lights.environment.sky_lux", keys::SKY),
     ("lights.environment.sky_color", keys::SKY_COLOR),
     ("lights.environment.ground_lux", keys::GROUND),
@@ -129,6 +132,7 @@ const PARAMS: &[(&str, Key)] = &[
     ("post.contrast", keys::CONTRAST),
     ("post.saturation", keys::SATURATION),
     ("post.grain", keys::GRAIN),
+    ("output.jpeg_quality", keys::JPEG_QUALITY),
 ];
 
 #[cfg(test)]

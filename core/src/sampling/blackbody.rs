@@ -70,7 +70,10 @@ mod tests {
         for temperature_k in (1667..=25_000).step_by(97) {
             let [r, g, b] = tint(f64::from(temperature_k));
             assert!((0.2126 * r + 0.7152 * g + 0.0722 * b - 1.0).abs() < 1e-12);
-            assert!(r >= 0.0 && g > 0.0 && b >= 0.0 && r - b < last, "{temperature_k}: {r} {g} {b}");
+            assert!(
+                r >= 0.0 && g > 0.0 && b >= 0.0 && r - b < last,
+                "{temperature_k}: {r} {g} {b}"
+            );
             last = r - b;
         }
         let [r, g, b] = tint(6504.0);

@@ -17,10 +17,34 @@ pub(super) fn camera(document: &Document, draws: Draws) -> Camera {
     Camera {
         width: document.image.width,
         height: document.image.height,
-        fov_vertical_deg: number(&camera.fov_vertical_deg, of(keys::CAMERA_FOV)),
+        fov_vertical_deg: match &camera.focal_length_mm {
+            None => number(&camera.fov_vertical_deg, of(keys::CAMERA_FOV)),
+            Some(focal_length_mm) => {
+                let f = number(focal_length_mm, of(keys::CAMERA_FOCAL_LENGTH));
+                fov_vertical_deg(f, camera.sensor_height_mm)
+            }
+        },
         position_m: vector(&camera.position_m, of(keys::CAMERA_POSITION))
             + vector(&camera.position_offset_m, of(keys::CAMERA_POSITION_OFFSET)),
         rotation: rotation(&camera.rotation_deg, offset_deg, of(keys::CAMERA_ROTATION)),
         near_m: camera.near_m,
+    }
+}
+
+/// The angle that a lens has on a sensor, degrees.
+fn fov_vertical_deg(focal_length_mm: f64, sensor_height_mm: f64) -> f64 {
+    2.0 * libm::atan2(0.5 * sensor_height_mm, focal_length_mm).to_degrees()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lenses_have_their_angles() {
+        for (focal_length_mm, expected_deg) in [(23.0, 55.1), (1.0, 170.5), (50.0, 27.0)] {
+            let got_deg = fov_vertical_deg(focal_length_mm, 24.0);
+            assert!((got_deg - expected_deg).abs() < 0.05, "{focal_length_mm} mm: {got_deg}");
+        }
     }
 }

@@ -140,6 +140,10 @@ keys! {
     PERSON_CHOSEN = "people.placement.chosen",
     PERSON_IN_VIEW = "people.placement.in_view",
     OCCLUDER_CHOSEN = "occluders.placement.chosen",
+    CAMERA_FOCAL_LENGTH = "camera.focal_length",
+    SUN_TEMPERATURE = "lights.sun.temperature",
+    LAMP_TEMPERATURE = "lights.lamp.temperature",
+    JPEG_QUALITY = "output.jpeg_quality",
     OCCLUDER_IN_VIEW = "occluders.placement.in_view",
 }
 

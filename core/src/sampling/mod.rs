@@ -12,6 +12,7 @@ use crate::scene::{Person, Scene};
 
 mod address;
 mod background;
+mod blackbody;
 mod body;
 mod camera;
 mod cast;
@@ -23,6 +24,7 @@ mod linked;
 mod look;
 mod outfit;
 mod outfit_table;
+mod output;
 mod people;
 mod place;
 mod poisson_disk;
@@ -135,6 +137,7 @@ impl Sampler {
             post: post::post(&document.post, draws),
             objects: background::objects(document, catalogue, draws, &camera),
             people: people::people(&document.people, catalogue, faces, draws, &camera),
+            jpeg_quality: output::jpeg_quality(&document.output, draws),
         }
     }
 }
