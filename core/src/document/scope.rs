@@ -20,12 +20,12 @@ impl Scope {
     #[must_use]
     pub fn of(path: &str) -> Self {
         let starts = |prefixes: &[&str]| prefixes.iter().any(|p| path.starts_with(p));
-        let ends = |names: &[&str]| names.iter().any(|n| path.contains(n));
+        // Colours of clothes are drawn anew in each frame, their cut lasts.
+        let dyed = [".color", "_color", ".hue_offset_deg"].iter().any(|name| path.contains(name));
+        let cut = path.starts_with("people.wardrobe.") && !dyed;
         if starts(&["people.placement.count", "occluders.placement.count"]) {
             Self::Frame
-        } else if starts(&["people.body.", "people.look."]) {
-            Self::Lasting
-        } else if starts(&["people.wardrobe."]) && !ends(&[".color", "_color", ".hue_offset_deg"]) {
+        } else if cut || starts(&["people.body.", "people.look."]) {
             Self::Lasting
         } else if starts(&["people."]) {
             Self::Person

@@ -71,8 +71,8 @@ fn look(
     let inside = |value: f64| (from..=to).contains(&value);
     let covers = format!("the table covers {from} to {to}; add the rows that are missing");
     let (min, max) = target.bounds();
-    let unread = target.laws("").iter().any(|(_, law)| matches!(law, Distribution::Empirical(_)));
-    if !unread && !(inside(min) && inside(max)) {
+    let read = target.laws("").iter().all(|(_, law)| !matches!(law, Distribution::Empirical(_)));
+    if read && !(inside(min) && inside(max)) {
         let what = format!("{of} takes values from {min} to {max}, but {covers}");
         return Some(Problem::new(format!("{path}.table"), what));
     }
