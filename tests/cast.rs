@@ -6,8 +6,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::sync::Arc;
 
-use figurant_core::document::cast::file::read_all;
 use figurant_core::document::cast::{self, Member};
+use figurant_core::document::settle::read_all;
 use figurant_core::document::{Document, file, presets};
 use figurant_core::geometry::person::MeshKey;
 use figurant_core::job::catalogue;

@@ -108,6 +108,7 @@ impl FrameMaker for Painter {
                 post: Post::default(),
                 objects: vec![],
                 people: vec![],
+                jpeg_quality: None,
             },
             picture: Some((0..width * height).flat_map(color).collect()),
             annotations: Annotations {

@@ -593,3 +593,87 @@ fn outfits_that_make_no_sense_are_refused() {
     let ages = problem(r#"[{"age_years": [9, 3], "top": "shirt", "bottom": "jeans"}]"#);
     assert!(ages.contains("people.wardrobe.outfit[0].age_years"), "{ages}");
 }
+
+#[test]
+fn people_face_what_they_should() {
+    let mut document = preset("everyday");
+    for (law, point) in [
+        (r#"{"facing": {"towards": "camera", "yaw_deg": 0}}"#, None),
+        (r#"{"facing": {"towards": [1, 2, -30]}}"#, Some(glam::DVec3::new(1.0, 2.0, -30.0))),
+    ] {
+        document.people.rotation_deg = serde_json::from_str(law).expect("a rotation");
+        for frame in 0..20 {
+            let scene = scene(&document, frame);
+            for p in &scene.people {
+                let front = p.placement.rotation * glam::DVec3::Z;
+                let way = point.unwrap_or(scene.camera.position_m) - p.placement.position_m;
+                let level = glam::DVec3::new(way.x, 0.0, way.z).normalize();
+                assert!(front.distance(level) < 1e-9, "{law}, frame {frame}: {front} {level}");
+            }
+        }
+    }
+    let refused =
+        r#"{"version": 1, "camera": {"rotation_deg": {"facing": {"towards": "camera"}}}}"#;
+    let problems = file::parse(refused).expect_err("no camera faces itself").to_string();
+    assert!(problems.starts_with("camera.rotation_deg.facing: only people"), "{problems}");
+}
+
+/// Discs within the boxes of people and upright cubes lie apart on the ground, and nobody moves.
+#[test]
+fn occluders_keep_out_of_people() {
+    let mut document = preset("everyday");
+    document.occluders.shape = Choice::Always(figurant_core::scene::Shape::Cube);
+    let clashes = |document: &Document| {
+        let clash = |s: &Scene| {
+            let cubes = s.objects.iter().filter(|o| o.role == Role::Occluder);
+            let near = |o: &figurant_core::scene::Object| {
+                let reach = 0.3 + 0.5 * o.placement.scale.x;
+                let away = |p: &Person| (p.placement.position_m - o.placement.position_m) * LEVEL;
+                s.people.iter().any(|p| away(p).length() < reach)
+            };
+            cubes.filter(|o| near(o)).count()
+        };
+        (0..60).map(|frame| clash(&scene(document, frame))).sum::<usize>()
+    };
+    const LEVEL: glam::DVec3 = glam::DVec3::new(1.0, 0.0, 1.0);
+    let mut apart = document.clone();
+    let figurant_core::document::Placement::Ground(ground) = &mut apart.occluders.placement else {
+        panic!("everyday has its occluders on the ground");
+    };
+    ground.no_overlap = true;
+    assert!(clashes(&document) > 5);
+    assert_eq!(clashes(&apart), 0);
+    assert_eq!(scene(&document, 7).people, scene(&apart, 7).people);
+}
+
+#[test]
+fn lenses_temperatures_and_qualities_are_drawn_and_move_nothing_else() {
+    let base = preset("peoplesanspeople");
+    let mut document = base.clone();
+    document.camera.focal_length_mm = Some(Param::uniform(20.0, 60.0));
+    document.lights.sun.temperature_k = Some(Param::uniform(2000.0, 10_000.0));
+    document.lights.points[1].temperature_k = Some(2700.0.into());
+    document.output.jpeg_quality = Param::uniform(60.0, 95.0);
+    let mut seen = (Vec::new(), Vec::new());
+    for frame in 0..100 {
+        let (mut a, b) = (scene(&document, frame), scene(&base, frame));
+        assert_eq!(b.jpeg_quality, None);
+        seen.0.push(a.camera.fov_vertical_deg);
+        seen.1.push(f64::from(a.jpeg_quality.take().expect("it is drawn")));
+        let luminance = |c: [f64; 3]| 0.2126 * c[0] + 0.7152 * c[1] + 0.0722 * c[2];
+        let (warm, plain) = (
+            a.lights.sun.as_ref().expect("a sun").color,
+            b.lights.sun.as_ref().expect("a sun").color,
+        );
+        assert_ne!(warm, plain);
+        // The product with a tint keeps the luminance of white alone.
+        assert!((luminance(warm) / luminance(plain) - 1.0).abs() < 0.15, "{warm:?} {plain:?}");
+        a.camera.fov_vertical_deg = b.camera.fov_vertical_deg;
+        a.lights = b.lights.clone();
+        assert_eq!(a, b, "frame {frame}");
+    }
+    let within = |all: &[f64], low: f64, high: f64| all.iter().all(|v| (low..=high).contains(v));
+    // 2 atan(12 / 60) and 2 atan(12 / 20).
+    assert!(within(&seen.0, 22.6, 61.93) && within(&seen.1, 60.0, 95.0), "{seen:?}");
+    assert!(!within(&seen.0, 25.0, 58.0) && !within(&seen.1, 63.0, 92.0), "{seen:?}");
+}

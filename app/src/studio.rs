@@ -5,10 +5,10 @@ use std::path::Path;
 use std::sync::Arc;
 
 use figurant_core::document::cast::Member;
-use figurant_core::document::cast::file::{Settled, Source, read_all};
 use figurant_core::document::file::{self, FileError};
 use figurant_core::document::import::{self, ImportError};
-use figurant_core::document::{self, Document, ImageFormat, presets};
+use figurant_core::document::settle::{Settled, Source, SourceKind, read_all};
+use figurant_core::document::{self, Document, ImageFormat, Param, presets};
 use figurant_core::draw::Cast;
 use figurant_core::engine::Engine;
 use figurant_core::engine::cpu::{CpuEngine, CpuOptions, SimdChoice};
@@ -322,11 +322,17 @@ fn info(
         licence: l.licence.to_owned(),
         source: l.source.to_owned(),
     });
-    let of_cast = sources.into_iter().map(|source| AssetLicence {
-        id: format!("people/{}", source.name),
-        content_hash: Some(source.content_hash),
-        licence: NO_LICENCE.to_owned(),
-        source: "file of people of the config".to_owned(),
+    let of_config = sources.into_iter().map(|source| {
+        let (kind, what) = match source.kind {
+            SourceKind::People => ("people", "file of people of the config"),
+            SourceKind::Numbers => ("numbers", "table of the config"),
+        };
+        AssetLicence {
+            id: format!("{kind}/{}", source.name),
+            content_hash: Some(source.content_hash),
+            licence: NO_LICENCE.to_owned(),
+            source: what.to_owned(),
+        }
     });
     DatasetInfo {
         config_json: file::text(document),
@@ -338,9 +344,13 @@ fn info(
         height: document.image.height,
         outputs: document.output.outputs.clone(),
         picture: match document.output.image_format {
-            ImageFormat::Jpeg => PictureFormat::Jpeg(document.output.jpeg_quality),
+            // One that is drawn comes with each frame.
+            ImageFormat::Jpeg => match document.output.jpeg_quality {
+                Param::Constant(quality) => PictureFormat::Jpeg(quality.round() as u8),
+                Param::Random(_) => PictureFormat::DEFAULT,
+            },
             ImageFormat::Png => PictureFormat::Png,
         },
-        assets: of_library.chain(of_cast).collect(),
+        assets: of_library.chain(of_config).collect(),
     }
 }

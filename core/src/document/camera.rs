@@ -29,6 +29,13 @@ pub struct Camera {
     pub enabled: bool,
     /// Angle between the rays through the middle of the top and bottom edge, without the distortion.
     pub fov_vertical_deg: Param,
+    /// Of a lens that is focused far away. Where given, the angle follows from it and the sensor, as
+    /// `2 atan(h / 2f)`, in place of `fov_vertical_deg`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub focal_length_mm: Option<Param>,
+    /// Height of the part of the sensor that the picture takes up; full frame has 24.
+    #[serde(skip_serializing_if = "is_full_frame")]
+    pub sensor_height_mm: f64,
     /// Where it stands.
     pub position_m: Vector,
     /// Added to the position.
@@ -44,12 +51,22 @@ pub struct Camera {
     pub distortion: Option<Distortion>,
 }
 
+/// Height of a sensor of 36 x 24 mm.
+const FULL_FRAME_MM: f64 = 24.0;
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde asks for references")]
+fn is_full_frame(height_mm: &f64) -> bool {
+    *height_mm == FULL_FRAME_MM
+}
+
 impl Default for Camera {
     fn default() -> Self {
         let five = || Param::uniform(-5.0, 5.0);
         Self {
             enabled: true,
             fov_vertical_deg: Param::uniform(5.0, 50.0),
+            focal_length_mm: None,
+            sensor_height_mm: FULL_FRAME_MM,
             position_m: Vector::constant(0.0, 0.0, 15.0),
             position_offset_m: Vector::within(5.0),
             rotation_deg: Rotation::NONE,

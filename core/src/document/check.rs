@@ -8,12 +8,6 @@ use serde_json::{Map, Value};
 
 use super::Problem;
 
-/// Forms of a parameter that are part of the format and cannot be drawn yet.
-const NOT_YET: [(&str, &str); 2] = [
-    ("empirical", "values from a file are not available yet; use \"choice\" or \"curve\""),
-    ("given", "linked parameters are not available yet; use \"mix\" or a constant"),
-];
-
 /// Everything in which a JSON value differs from a schema as [`super::schema`] makes it.
 #[must_use]
 pub fn check(value: &Value, schema: &Value) -> Vec<Problem> {
@@ -89,17 +83,9 @@ impl<'a> Walk<'a> {
         match schema {
             Some(schema) => self.check(&map[name], schema, &join(path, name)),
             None => {
-                let is_param = names.contains(&"uniform") && names.contains(&"mix");
-                let later = NOT_YET.iter().find(|(n, _)| is_param && n == name);
-                let problem = match later {
-                    Some((_, why)) => Problem::new(join(path, name), *why),
-                    None => Problem::new(
-                        join(path, name),
-                        format!("unknown, expected one of {}", list(&names)),
-                    )
-                    .did_you_mean(name, names.iter().copied()),
-                };
-                self.problems.push(problem);
+                let message = format!("unknown, expected one of {}", list(&names));
+                let problem = Problem::new(join(path, name), message);
+                self.problems.push(problem.did_you_mean(name, names.iter().copied()));
             }
         }
     }
@@ -355,7 +341,8 @@ mod tests {
         );
         let paths: Vec<&str> = found.iter().map(|p| p.path.as_str()).collect();
         let expected = [
-            "background.wall.hue_offset_deg.given",
+            "background.wall.hue_offset_deg.given.of",
+            "background.wall.hue_offset_deg.given.table",
             "camera.rotation_deg.rotation",
             "frames",
             "lights.environment.sky_lux",
@@ -380,12 +367,6 @@ mod tests {
         assert_eq!(suggestion("occluders.shape").as_deref(), Some("cube"));
         assert_eq!(suggestion("people.body.sex.choice[0][0]").as_deref(), Some("female"));
         assert_eq!(suggestion("people.body.stature_m").as_deref(), Some("auto"));
-    }
-
-    #[test]
-    fn forms_that_come_later_say_so() {
-        let found = problems(&json!({"people": {"body": {"age_years": {"empirical": {}}}}}));
-        assert!(found[0].contains("not available yet"), "{found:?}");
     }
 
     #[test]

@@ -54,6 +54,10 @@ pub struct Sun {
     pub illuminance_lux: Param,
     /// Multiplies the illuminance.
     pub color: Color,
+    /// Temperature of a glowing body, 1667..25000, whose colour multiplies this one without changing
+    /// the luminance: 2700 for light bulbs, 5500 for the sun.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub temperature_k: Option<Param>,
     /// Whether it casts shadows.
     pub shadow: bool,
 }
@@ -65,6 +69,7 @@ impl Default for Sun {
             direction: SunDirection::Clock(Clock::default()),
             illuminance_lux: 10_000.0.into(),
             color: Color::srgb(1.0, 0.957, 0.839),
+            temperature_k: None,
             shadow: true,
         }
     }
@@ -126,6 +131,10 @@ pub struct PointLight {
     pub intensity_cd: Param,
     /// Multiplies the intensity.
     pub color: Color,
+    /// Temperature of a glowing body, 1667..25000, whose colour multiplies this one without changing
+    /// the luminance: 2700 for light bulbs, 5500 for the sun.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub temperature_k: Option<Param>,
     /// Where its light reaches zero.
     pub range_m: f64,
     /// Radius of the lamp; light grows no further nearer than this.
@@ -140,6 +149,7 @@ impl Default for PointLight {
             position_m: Vector::constant(0.0, 0.0, 0.0),
             intensity_cd: Param::uniform(5_000.0, 50_000.0),
             color: any_color(),
+            temperature_k: None,
             range_m: 25.0,
             radius_m: 0.025,
         }
@@ -162,6 +172,10 @@ pub struct MovingLight {
     pub intensity_cd: Param,
     /// Multiplies the intensity.
     pub color: Color,
+    /// Temperature of a glowing body, 1667..25000, whose colour multiplies this one without changing
+    /// the luminance: 2700 for light bulbs, 5500 for the sun.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub temperature_k: Option<Param>,
     /// Where its light reaches zero.
     pub range_m: f64,
     /// Radius of the lamp; light grows no further nearer than this.
@@ -178,6 +192,7 @@ impl Default for MovingLight {
             position_offset_m: Vector::within(3.65),
             intensity_cd: lamp.intensity_cd,
             color: lamp.color,
+            temperature_k: None,
             range_m: lamp.range_m,
             radius_m: lamp.radius_m,
         }

@@ -6,9 +6,10 @@
 //! left-handed coordinates mirrored in x.
 //!
 //! [`mod@file`] reads and writes documents, [`mod@import`] makes them from the scenarios of Unity
-//! Perception, [`mod@cast`] holds people who are listed in them, [`mod@check`] compares their form
-//! with the schema, and [`validate()`] says which values make no sense. Each problem names its
-//! field.
+//! Perception, [`mod@cast`] holds people who are listed in them, [`mod@measured`] reads numbers from
+//! tables, [`mod@settle`] puts what stands in such files into the document, [`mod@check`] compares
+//! their form with the schema, and [`validate()`] says which values make no sense. Each problem names
+//! its field.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -21,12 +22,15 @@ pub mod file;
 mod format;
 pub mod import;
 mod lights;
+pub mod measured;
 mod output;
 mod param;
 mod people;
 mod place;
 mod post;
 pub mod presets;
+mod scope;
+pub mod settle;
 mod validate;
 mod vector;
 mod wardrobe;
@@ -38,8 +42,8 @@ pub use lights::{
 };
 pub use output::{ImageFormat, Labels, Output, Quality, Scheme};
 pub use param::{
-    Auto, AutoWord, Beta, Binomial, Chance, Choice, Distribution, Flag, Lognormal, Normal, Param,
-    Triangular, Weighted,
+    Auto, AutoWord, Beta, Binomial, Chance, Choice, Distribution, Empirical, Flag, Given,
+    Lognormal, Normal, Param, Triangular, Weighted,
 };
 pub use people::{Ancestry, Blend, Body, Look, Origin, People, Pose};
 pub use place::{
@@ -47,10 +51,11 @@ pub use place::{
     Wall,
 };
 pub use post::Post;
-pub use validate::{MAX_OBJECTS, MAX_PEOPLE, validate};
+pub use scope::Scope;
+pub use validate::{MAX_OBJECTS, MAX_PEOPLE, linked, params, validate};
 pub use vector::{
-    BoxRegion, Color, ColorLaw, GridRegion, JointRotation, Region, Rotation, RotationLaw, Round,
-    Vector,
+    BoxRegion, CameraWord, Color, ColorLaw, Facing, GridRegion, JointRotation, Region, Rotation,
+    RotationLaw, Round, Towards, Vector,
 };
 pub use wardrobe::{Bottom, Outer, OutfitRow, Season, Shoes, Top, Wardrobe};
 

@@ -3,6 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use super::Param;
 use crate::plan::{Output as Kind, Outputs};
 
 /// How labels are made.
@@ -34,20 +35,24 @@ pub enum Scheme {
 }
 
 /// What is written.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Output {
     /// Pictures and labels.
     pub outputs: Outputs,
     /// How pictures are stored.
     pub image_format: ImageFormat,
-    /// 1..100.
-    pub jpeg_quality: u8,
+    /// 1..100, rounded to the nearest whole number.
+    pub jpeg_quality: Param,
 }
 
 impl Default for Output {
     fn default() -> Self {
-        Self { outputs: Kind::ALL.into(), image_format: ImageFormat::Jpeg, jpeg_quality: 92 }
+        Self {
+            outputs: Kind::ALL.into(),
+            image_format: ImageFormat::Jpeg,
+            jpeg_quality: 92.0.into(),
+        }
     }
 }
 

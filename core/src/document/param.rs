@@ -45,6 +45,10 @@ pub enum Distribution {
     Each(Vec<f64>),
     /// Weights and the parameters they stand for.
     Mix(Vec<(f64, Param)>),
+    /// As it was measured: values or a histogram from a file.
+    Empirical(Empirical),
+    /// By the value that another parameter takes in the same frame, for the same person or object.
+    Given(Given),
 }
 
 /// See [`Distribution::Normal`].
@@ -115,6 +119,47 @@ pub struct Binomial {
     pub n: u32,
     /// Probability of success.
     pub p: f64,
+}
+
+/// A CSV file whose first line names its columns; see [`super::measured`]. [`super::settle`] puts what
+/// it holds in its place.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Empirical {
+    /// Its path, from the config's folder or from one of `assets`.
+    pub file: String,
+    /// The column of values. Where absent, the file is a histogram with the columns `lo` and `hi`:
+    /// a bin is drawn by its weight, and the value evenly within it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub column: Option<String>,
+    /// The column of weights. Where absent, every value counts as much as any other, and a histogram
+    /// has its weights in `weight`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub weight: Option<String>,
+}
+
+/// One parameter by the value of another.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Given {
+    /// Path of the other one, as in `people.body.age_years` or `lights.points[2].intensity_cd`.
+    pub of: String,
+    /// From and to of its values, and what follows. Each row begins where the one before it ends;
+    /// `to` itself belongs to the next row, the last one keeps it.
+    pub table: Vec<(f64, f64, Param)>,
+}
+
+impl Given {
+    /// What follows from a value of the other parameter: the row that holds it, or the nearest one.
+    ///
+    /// # Panics
+    /// Where the table is empty, which validation refuses.
+    #[must_use]
+    pub fn row(&self, value: f64) -> &Param {
+        let last = self.table.len() - 1;
+        let at = self.table.iter().position(|row| value < row.1).unwrap_or(last);
+        &self.table[at].2
+    }
 }
 
 /// No 53-bit uniform number lies further out in a normal, in standard deviations.
@@ -191,6 +236,35 @@ impl Param {
             Distribution::Mix(parts) => {
                 hull(parts.iter().filter(|p| p.0 > 0.0).map(|p| p.1.bounds()))
             }
+            // Nobody knows before it is read.
+            Distribution::Empirical(_) => (f64::NEG_INFINITY, f64::INFINITY),
+            Distribution::Given(given) => hull(given.table.iter().map(|row| row.2.bounds())),
+        }
+    }
+
+    /// The law itself and all within it, each with its path; nothing for a constant.
+    #[must_use]
+    pub fn laws(&self, path: &str) -> Vec<(String, &Distribution)> {
+        let mut laws = Vec::new();
+        self.add_laws(path, &mut laws);
+        laws
+    }
+
+    fn add_laws<'a>(&'a self, path: &str, laws: &mut Vec<(String, &'a Distribution)>) {
+        let Self::Random(distribution) = self else { return };
+        laws.push((path.to_owned(), distribution));
+        match distribution {
+            Distribution::Mix(parts) => {
+                for (i, (_, part)) in parts.iter().enumerate() {
+                    part.add_laws(&format!("{path}.mix[{i}][1]"), laws);
+                }
+            }
+            Distribution::Given(given) => {
+                for (i, (_, _, row)) in given.table.iter().enumerate() {
+                    row.add_laws(&format!("{path}.given.table[{i}][2]"), laws);
+                }
+            }
+            _ => {}
         }
     }
 }
@@ -310,6 +384,9 @@ mod tests {
             r#"{"choice":[[1.0,3.0],[2.0,1.0]]}"#,
             r#"{"curve":[[0.0,0.0],[1.0,2.0],[4.0,0.0]]}"#,
             r#"{"mix":[[0.7,1.0],[0.3,{"uniform":[0.0,1.0]}]]}"#,
+            r#"{"empirical":{"file":"ages.csv","column":"age"}}"#,
+            r#"{"empirical":{"file":"ages.csv","weight":"people"}}"#,
+            r#"{"given":{"of":"people.scale","table":[[0.0,1.0,2.0],[1.0,3.0,{"poisson":4.0}]]}}"#,
         ] {
             let param: Param = serde_json::from_str(text).unwrap();
             assert_eq!(serde_json::to_string(&param).unwrap(), text);
@@ -325,5 +402,16 @@ mod tests {
         assert_eq!(bounds(r#"{"normal":{"mean":0,"std":1,"min":-1}}"#), (-1.0, 8.3));
         assert_eq!(bounds(r#"{"poisson":4}"#), (0.0, 52.0));
         assert_eq!(bounds(r#"{"curve":[[1,1],[2,1]]}"#), (1.0, 2.0));
+        let given = r#"{"given":{"of":"a","table":[[0,1,{"uniform":[3,4]}],[1,2,-1]]}}"#;
+        assert_eq!(bounds(given), (-1.0, 4.0));
+    }
+
+    #[test]
+    fn a_row_holds_its_beginning_and_the_last_one_its_end() {
+        let given: Given =
+            serde_json::from_str(r#"{"of": "a", "table": [[0, 1, 10], [1, 2, 20]]}"#).unwrap();
+        for (value, row) in [(0.0, 10.0), (0.99, 10.0), (1.0, 20.0), (2.0, 20.0), (9.0, 20.0)] {
+            assert_eq!(*given.row(value), Param::Constant(row), "{value}");
+        }
     }
 }

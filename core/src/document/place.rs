@@ -21,6 +21,18 @@ pub enum Placement {
     Grid(Grid),
 }
 
+impl Placement {
+    /// Whether what is placed keeps out of what else stands.
+    #[must_use]
+    pub const fn no_overlap(&self) -> bool {
+        match self {
+            Self::PoissonDisk(disk) => disk.no_overlap,
+            Self::Ground(ground) => ground.no_overlap,
+            Self::Row(_) | Self::Grid(_) => false,
+        }
+    }
+}
+
 /// A saturated pattern: no further point fits.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -35,13 +47,37 @@ pub struct PoissonDisk {
     pub depth_m: Param,
     /// Least distance between two, measured in x and y.
     pub separation_m: f64,
+    /// How many of the pattern, rounded to the nearest whole number: any of its points as likely as
+    /// any other. All of them where absent, or where there are fewer.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub count: Option<Param>,
+    /// Whether what stands there keeps out of what else stands: people of people, occluders of people
+    /// and of each other. A person counts as a box of 0.6 x 1.8 x 0.6 m times the scale, whatever
+    /// the pose; an occluder as its box. Up to 200 depths are tried for each; who finds no room is left
+    /// out.
+    #[serde(default, skip_serializing_if = "is_false")]
+    pub no_overlap: bool,
+    /// Share of those who must stand where the camera sees their middle, 0..1; the others may stand
+    /// anywhere.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub in_view: f64,
 }
 
 fn seed_side() -> [f64; 2] {
     [-7.5, 7.5]
 }
 
-/// An area on the ground. Who finds no room there is left out.
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde asks for references")]
+const fn is_false(value: &bool) -> bool {
+    !*value
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde asks for references")]
+fn is_zero(value: &f64) -> bool {
+    *value == 0.0
+}
+
+/// An area on the ground. Up to 200 places are tried for each; who finds no room is left out.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Ground {
@@ -56,6 +92,15 @@ pub struct Ground {
     pub count: Param,
     /// Least distance between two.
     pub separation_m: f64,
+    /// Whether what stands there keeps out of what else stands: people of people, occluders of people
+    /// and of each other. A person counts as a box of 0.6 x 1.8 x 0.6 m times the scale, whatever
+    /// the pose; an occluder as its box.
+    #[serde(default, skip_serializing_if = "is_false")]
+    pub no_overlap: bool,
+    /// Share of those who must stand where the camera sees their middle, 0..1; the others may stand
+    /// anywhere.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub in_view: f64,
 }
 
 /// Side by side along x.
@@ -237,6 +282,9 @@ impl Default for Occluders {
                 y_m: seed_side(),
                 depth_m: Param::uniform(-10.0, 14.0),
                 separation_m: 2.5,
+                count: None,
+                no_overlap: false,
+                in_view: 0.0,
             }),
             scale: Param::uniform(1.0, 12.0),
             rotation_deg: Rotation::Euler([turn(), turn(), turn()]),

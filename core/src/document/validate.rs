@@ -1,17 +1,21 @@
 //! Which values of a document make sense: ranges, combinations and what a frame may hold at most.
 //!
-//! Form is [`super::check`]'s business, the rules for single parameters are in [`rules`].
+//! Form is [`super::check`]'s business, the rules for single parameters are in [`rules`], those for
+//! parameters that look at each other in [`links`].
+
+use std::collections::BTreeMap;
 
 mod cast;
+mod links;
 mod rules;
 
 pub(super) use cast::problems_of_member;
 use rules::{Check, Range};
 
 use super::{
-    Ancestry, Auto, Background, Body, Camera, Document, Environment, Image, Labels, Lights, Look,
-    MovingLight, Occluders, OutfitRow, Output, Param, People, Placement, PointLight, Pose, Post,
-    Problem, Quality, Scheme, Sun, SunDirection, VERSION, Wardrobe,
+    Ancestry, Auto, Background, Body, Camera, Document, Environment, Image, JointRotation, Labels,
+    Lights, Look, MovingLight, Occluders, OutfitRow, Output, Param, People, Placement, PointLight,
+    Pose, Post, Problem, Quality, Rotation, Scheme, Sun, SunDirection, VERSION, Wardrobe,
 };
 
 /// People in a frame at most.
@@ -25,6 +29,11 @@ const MAX_SIDE: u32 = 16_384;
 const MAX_PIXELS: u64 = 64 << 20;
 const MAX_FRAMES: u32 = 100_000_000;
 
+const MIN_FOV_DEG: f64 = 0.1;
+const MAX_FOV_DEG: f64 = 179.0;
+const FOV_DEG: Range = Range::from_to(MIN_FOV_DEG, MAX_FOV_DEG);
+/// Where the fit of the colours of glowing bodies holds.
+const GLOWING_K: Range = Range::from_to(1667.0, 25_000.0);
 const POSITION: Range = Range::from_to(-1e7, 1e7);
 const ANGLE: Range = Range::from_to(-3600.0, 3600.0);
 const SHARE: Range = Range::from_to(0.0, 1.0);
@@ -37,6 +46,25 @@ const BMI_KG_M2: Range = Range::from_to(10.0, 60.0);
 /// Everything in a document that makes no sense, in the order of its fields.
 #[must_use]
 pub fn validate(document: &Document) -> Vec<Problem> {
+    let Check { mut problems, params } = sections(document);
+    problems.extend(links::check(&params, &document.people));
+    problems
+}
+
+/// Every parameter of a document by its path; what says `"auto"` has none.
+#[must_use]
+pub fn params(document: &Document) -> BTreeMap<String, Param> {
+    sections(document).params
+}
+
+/// Those of them that others look at.
+#[must_use]
+pub fn linked(document: &Document) -> BTreeMap<String, Param> {
+    links::targets(&params(document))
+}
+
+/// Checks all sections, each for itself.
+fn sections(document: &Document) -> Check {
     let mut c = Check::default();
     let d = document;
     if d.version != VERSION {
@@ -61,7 +89,7 @@ pub fn validate(document: &Document) -> Vec<Problem> {
     labels(&mut c, &d.labels);
     output(&mut c, &d.output);
     quality(&mut c, &d.quality);
-    c.problems
+    c
 }
 
 fn image(c: &mut Check, image: &Image) {
@@ -75,9 +103,17 @@ fn image(c: &mut Check, image: &Image) {
 }
 
 fn camera(c: &mut Check, camera: &Camera) {
-    c.param("camera.fov_vertical_deg", &camera.fov_vertical_deg, Range::from_to(0.1, 179.0));
+    c.number("camera.sensor_height_mm", camera.sensor_height_mm, Range::from_to(0.1, 1e3));
+    match &camera.focal_length_mm {
+        None => c.param("camera.fov_vertical_deg", &camera.fov_vertical_deg, FOV_DEG),
+        Some(focal_length_mm) => focal_length(c, focal_length_mm, camera.sensor_height_mm),
+    };
     c.vector("camera.position_m", &camera.position_m, POSITION);
     c.vector("camera.position_offset_m", &camera.position_offset_m, POSITION);
+    if let Rotation::Joint(JointRotation::Facing(_)) = &camera.rotation_deg {
+        let what = "only people and occluders can face something; give Euler angles";
+        c.report("camera.rotation_deg.facing", what);
+    }
     c.rotation("camera.rotation_deg", &camera.rotation_deg);
     c.axes("camera.rotation_offset_deg", &camera.rotation_offset_deg, ANGLE);
     c.number("camera.near_m", camera.near_m, Range::from_to(1e-4, 1e3));
@@ -90,6 +126,28 @@ fn camera(c: &mut Check, camera: &Camera) {
     }
 }
 
+/// A focal length whose angle is one that a camera may have.
+fn focal_length(c: &mut Check, focal_length_mm: &Param, sensor_height_mm: f64) -> bool {
+    let path = "camera.focal_length_mm";
+    if !c.param(path, focal_length_mm, Range::above(0.0, 1e6)) {
+        return false;
+    }
+    let (shortest, longest) = focal_length_mm.bounds();
+    let fov_deg = |f: f64| 2.0 * libm::atan2(0.5 * sensor_height_mm, f).to_degrees();
+    // The file has not been read yet where the bounds are infinite.
+    let fault = [shortest, longest].into_iter().find(|f| {
+        let fov_deg = fov_deg(*f);
+        f.is_finite() && !(MIN_FOV_DEG..=MAX_FOV_DEG).contains(&fov_deg)
+    });
+    fault.is_none_or(|f| {
+        let what = format!(
+            "{f} mm on {sensor_height_mm} mm give {:.3} degrees, must be {MIN_FOV_DEG} to {MAX_FOV_DEG}",
+            fov_deg(f)
+        );
+        c.report(path, what)
+    })
+}
+
 fn lights(c: &mut Check, lights: &Lights) {
     sun(c, &lights.sun);
     if lights.points.len() > MAX_LIGHTS {
@@ -97,13 +155,22 @@ fn lights(c: &mut Check, lights: &Lights) {
         c.report("lights.points", format!("must hold at most {MAX_LIGHTS} lamps, got {got}"));
     }
     for (i, lamp) in lights.points.iter().enumerate() {
-        let PointLight { enabled: _, on, position_m, intensity_cd, color, range_m, radius_m } =
-            lamp;
+        let PointLight {
+            enabled: _,
+            on,
+            position_m,
+            intensity_cd,
+            color,
+            temperature_k,
+            range_m,
+            radius_m,
+        } = lamp;
         let path = format!("lights.points[{i}]");
         c.flag(&format!("{path}.on"), on);
         c.vector(&format!("{path}.position_m"), position_m, POSITION);
         c.param(&format!("{path}.intensity_cd"), intensity_cd, Range::from_to(0.0, 1e9));
         c.color(&format!("{path}.color"), color);
+        glowing(c, &path, temperature_k.as_ref());
         reach(c, &path, *range_m, *radius_m);
     }
     let moving: &MovingLight = &lights.moving;
@@ -112,8 +179,15 @@ fn lights(c: &mut Check, lights: &Lights) {
     c.vector("lights.moving.position_offset_m", &moving.position_offset_m, POSITION);
     c.param("lights.moving.intensity_cd", &moving.intensity_cd, Range::from_to(0.0, 1e9));
     c.color("lights.moving.color", &moving.color);
+    glowing(c, "lights.moving", moving.temperature_k.as_ref());
     reach(c, "lights.moving", moving.range_m, moving.radius_m);
     environment(c, &lights.environment);
+}
+
+fn glowing(c: &mut Check, path: &str, temperature_k: Option<&Param>) {
+    if let Some(temperature_k) = temperature_k {
+        c.param(&format!("{path}.temperature_k"), temperature_k, GLOWING_K);
+    }
 }
 
 fn reach(c: &mut Check, path: &str, range_m: f64, radius_m: f64) {
@@ -142,6 +216,7 @@ fn sun(c: &mut Check, sun: &Sun) {
     }
     c.param("lights.sun.illuminance_lux", &sun.illuminance_lux, Range::from_to(0.0, 1e7));
     c.color("lights.sun.color", &sun.color);
+    glowing(c, "lights.sun", sun.temperature_k.as_ref());
 }
 
 fn environment(c: &mut Check, environment: &Environment) {
@@ -204,6 +279,10 @@ fn placement(c: &mut Check, path: &str, placement: &Placement, limit: u32) {
             let area = c.interval(&at("x_m"), disk.x_m, POSITION)
                 & c.interval(&at("y_m"), disk.y_m, POSITION);
             c.param(&at("depth_m"), &disk.depth_m, POSITION);
+            if let Some(count) = &disk.count {
+                c.param(&at("count"), count, Range::from_to(0.0, f64::from(limit)));
+            }
+            c.number(&at("in_view"), disk.in_view, SHARE);
             if c.number(&at("separation_m"), disk.separation_m, Range::above(0.0, 1e6)) && area {
                 let (w, h) = (disk.x_m[1] - disk.x_m[0], disk.y_m[1] - disk.y_m[0]);
                 let most = most_points(w, h, disk.separation_m);
@@ -220,6 +299,7 @@ fn placement(c: &mut Check, path: &str, placement: &Placement, limit: u32) {
             let area = c.interval(&at("x_m"), ground.x_m, POSITION)
                 & c.interval(&at("z_m"), ground.z_m, POSITION);
             c.number(&at("y_m"), ground.y_m, POSITION);
+            c.number(&at("in_view"), ground.in_view, SHARE);
             let count = c.param(&at("count"), &ground.count, Range::from_to(0.0, f64::from(limit)));
             let separation =
                 c.number(&at("separation_m"), ground.separation_m, Range::from_to(0.0, 1e6));
@@ -448,7 +528,7 @@ fn output(c: &mut Check, output: &Output) {
     if output.outputs.is_empty() {
         c.report("output.outputs", "must name at least one output, such as \"rgb\"");
     }
-    c.count("output.jpeg_quality", u32::from(output.jpeg_quality), 1, 100);
+    c.param("output.jpeg_quality", &output.jpeg_quality, Range::from_to(1.0, 100.0));
 }
 
 fn quality(c: &mut Check, quality: &Quality) {

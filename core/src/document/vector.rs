@@ -106,11 +106,42 @@ pub enum Rotation {
 }
 
 /// An orientation that is drawn as a whole.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum JointRotation {
     /// By this law.
     Rotation(RotationLaw),
+    /// Upright, the front towards something; for people and occluders.
+    Facing(Facing),
+}
+
+/// Upright, with the front (+Z at rest) towards something.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Facing {
+    /// Towards what.
+    pub towards: Towards,
+    /// Turned away from it, to the left.
+    #[serde(default)]
+    pub yaw_deg: Param,
+}
+
+/// What is faced.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(untagged)]
+pub enum Towards {
+    /// The camera.
+    Camera(CameraWord),
+    /// A point, metres.
+    Point([f64; 3]),
+}
+
+/// The word `"camera"`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum CameraWord {
+    /// The camera of the frame.
+    Camera,
 }
 
 /// A law for orientations.

@@ -105,7 +105,7 @@ impl Dataset {
         };
         if self.wants(Output::Rgb) {
             let pixels = picture.ok_or_else(|| missing("the picture"))?;
-            let format = self.info.picture;
+            let format = self.info.picture.or_quality(scene.jpeg_quality);
             add(FrameFile::picture(format), format.encode(pixels, width, height)?);
         }
         if self.wants(Output::Instance) {

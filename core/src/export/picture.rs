@@ -22,6 +22,15 @@ impl PictureFormat {
     /// What COCO users expect to find: visually lossless at a quarter of a PNG's size.
     pub const DEFAULT: Self = Self::Jpeg(92);
 
+    /// The same with a quality of the frame's own, if it has one.
+    #[must_use]
+    pub const fn or_quality(self, quality: Option<u8>) -> Self {
+        match (self, quality) {
+            (Self::Jpeg(_), Some(quality)) => Self::Jpeg(quality),
+            _ => self,
+        }
+    }
+
     /// The file name's ending, without the dot.
     #[must_use]
     pub const fn extension(self) -> &'static str {

@@ -65,6 +65,7 @@ pub fn scene(frame: u32) -> Scene {
         post: Post::default(),
         objects: Vec::new(),
         people: Vec::new(),
+        jpeg_quality: None,
     }
 }
 

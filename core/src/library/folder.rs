@@ -25,7 +25,7 @@ const MAX_DEPTH: usize = 16;
 ///
 /// # Errors
 /// When a folder is missing, is none, cannot be read, or holds neither such a file nor one of
-/// poses or people.
+/// poses, people or numbers.
 pub(super) fn named(folders: &[PathBuf]) -> Result<BTreeMap<String, PathBuf>, TextureError> {
     let mut paths = BTreeMap::new();
     let mut names: Vec<String> = Vec::new();
@@ -62,17 +62,20 @@ fn list(folder: &Path) -> Result<Vec<(String, PathBuf)>, TextureError> {
     }
     let mut found = Vec::new();
     walk(folder, "", 0, &mut found)?;
-    if found.is_empty() && !holds_json(folder) {
+    if found.is_empty() && !holds_other_files(folder) {
         return Err(TextureError::Empty { path: folder.to_owned() });
     }
     found.sort();
     Ok(found)
 }
 
-/// Whether files of poses or people can be in a folder.
-fn holds_json(folder: &Path) -> bool {
+/// Whether files of poses or people, or tables of numbers, can be in a folder.
+fn holds_other_files(folder: &Path) -> bool {
     let mut entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
-    entries.any(|entry| entry.file_name().to_string_lossy().ends_with(".json"))
+    entries.any(|entry| {
+        let name = entry.file_name();
+        [".json", ".csv"].iter().any(|ending| name.to_string_lossy().ends_with(ending))
+    })
 }
 
 fn walk(

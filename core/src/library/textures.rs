@@ -55,7 +55,7 @@ pub enum TextureError {
     Missing { path: PathBuf },
     #[error("texture folder {} is not a folder; name the folder that holds the pictures", path.display())]
     NotAFolder { path: PathBuf },
-    #[error("texture folder {} holds no .jpg, .jpeg, .png, .hdr or .exr file and no .json file of poses or people; add some or drop the folder", path.display())]
+    #[error("texture folder {} holds no .jpg, .jpeg, .png, .hdr or .exr file, and neither a .json file of poses or people nor a .csv table; add some or drop the folder", path.display())]
     Empty { path: PathBuf },
     #[error("{} cannot be read: {source}", path.display())]
     Unreadable { path: PathBuf, source: std::io::Error },

@@ -2,21 +2,31 @@
 
 use glam::{DQuat, DVec3};
 
-use super::place::{OCCLUDERS, places};
-use super::value::{color, item, number, rotation, vector};
+use super::linked::{Draw, Draws, Place};
+use super::people::Standing;
+use super::place::{OCCLUDERS, Places, Setting, places};
+use super::solid::Solid;
+use super::value::{color, item, number, rotation_at, vector};
 use super::{Catalogue, keys};
-use crate::base::rng::{Draw, Draws, Key};
-use crate::document::{Choice, Color, Document, Param};
-use crate::scene::{Material, Object, Placement, Role, Shape};
+use crate::base::rng::Key;
+use crate::document::{Choice, Color, Document, Occluders, Param};
+use crate::scene::{Camera, Material, Object, Placement, Role, Shape};
 
 /// Thickness of the floor; its upper face is where the document says.
 const FLOOR_THICKNESS_M: f64 = 0.1;
 /// Sizes of the seed's primitives at scale 1: five inches, spheres six.
 const BASE_SIZE_M: f64 = 0.127;
 const SPHERE_SIZE_M: f64 = 0.1524;
+/// The lane of the materials of occluders; wall and floor have 1 and 2.
+const OCCLUDER_LANE: u16 = 0;
 
-pub(super) fn objects(document: &Document, catalogue: &Catalogue, draws: Draws) -> Vec<Object> {
-    let surfaces = Surfaces { document, catalogue, draws };
+pub(super) fn objects(
+    document: &Document,
+    catalogue: &Catalogue,
+    draws: Draws,
+    camera: &Camera,
+) -> Vec<Object> {
+    let surfaces = Surfaces { document, catalogue, draws, camera };
     let mut objects = Vec::new();
     objects.extend(surfaces.wall());
     objects.extend(surfaces.floor());
@@ -27,7 +37,8 @@ pub(super) fn objects(document: &Document, catalogue: &Catalogue, draws: Draws) 
 struct Surfaces<'a> {
     document: &'a Document,
     catalogue: &'a Catalogue,
-    draws: Draws,
+    draws: Draws<'a>,
+    camera: &'a Camera,
 }
 
 /// What a section says of its surface, with the keys of its values.
@@ -41,11 +52,11 @@ struct Finish<'a> {
 impl Surfaces<'_> {
     /// `place` keeps the materials of walls, floors and occluders apart.
     fn material(&self, finish: &Finish, slot: u32, place: u16) -> Material {
-        let of = |key| self.draws.of(key, slot);
+        let draws = self.draws.at(Place::Surface(slot, place));
+        let of = |key| draws.of(key, slot);
         let rules = &self.document.materials;
-        let rule = |param, key| {
-            number(param, self.draws.random_if(rules.enabled).of(key, slot).lane(place))
-        };
+        let rule =
+            |param, key| number(param, draws.random_if(rules.enabled).of(key, slot).lane(place));
         Material {
             texture: asset(finish.texture.0, &self.catalogue.textures, of(finish.texture.1)),
             base_color: color(finish.color.0, of(finish.color.1)),
@@ -109,26 +120,57 @@ impl Surfaces<'_> {
             hue_offset_deg: (&occluders.hue_offset_deg, keys::OCCLUDER_HUE),
             uv_repeat: occluders.uv_repeat,
         };
-        for (slot, base) in places(&occluders.placement, &OCCLUDERS, self.draws).points {
-            let of = |key| self.draws.of(key, slot);
-            let shape = *item(&occluders.shape, of(keys::OCCLUDER_SHAPE));
-            let unit = if shape == Shape::Sphere { SPHERE_SIZE_M } else { BASE_SIZE_M };
-            let size = unit * number(&occluders.scale, of(keys::OCCLUDER_SCALE));
-            let turn = rotation(&occluders.rotation_deg, DVec3::ZERO, of(keys::OCCLUDER_ROTATION));
-            // Turned about the middle of the base.
-            let middle = base + turn * DVec3::new(0.0, half_height(shape) * size, 0.0);
+        let (draws, camera) = (self.draws, self.camera);
+        for (slot, base_m) in occluder_places(self.document, draws, camera).points {
+            let (shape, form) = occluder(occluders, draws, camera, slot, base_m);
             objects.push(Object {
                 role: Role::Occluder,
                 shape,
-                placement: Placement {
-                    position_m: middle,
-                    rotation: turn,
-                    scale: DVec3::splat(size),
-                },
-                material: self.material(&finish, slot, 0),
+                placement: form,
+                material: self.material(&finish, slot, OCCLUDER_LANE),
             });
         }
     }
+}
+
+/// Where occluders stand; nowhere if there are none.
+pub(super) fn occluder_places(document: &Document, draws: Draws, camera: &Camera) -> Places {
+    let occluders = &document.occluders;
+    if !occluders.enabled {
+        return Places { points: Vec::new(), wanted: 0 };
+    }
+    let taken = if occluders.placement.no_overlap() {
+        Standing::new(&document.people, draws, camera).solids()
+    } else {
+        Vec::new()
+    };
+    let solid = |slot, base_m| {
+        let (shape, form) = occluder(occluders, draws, camera, slot, base_m);
+        let half = DVec3::new(0.5, half_height(shape), 0.5);
+        Solid { middle_m: form.position_m, half_m: half * form.scale, rotation: form.rotation }
+    };
+    let setting = Setting { camera, taken: &taken, solid: &solid };
+    places(&occluders.placement, &OCCLUDERS, draws, setting)
+}
+
+/// An occluder that stands with the middle of its base somewhere.
+fn occluder(
+    occluders: &Occluders,
+    draws: Draws,
+    camera: &Camera,
+    slot: u32,
+    base_m: DVec3,
+) -> (Shape, Placement) {
+    let draws = draws.at(Place::Surface(slot, OCCLUDER_LANE));
+    let of = |key| draws.of(key, slot);
+    let shape = *item(&occluders.shape, of(keys::OCCLUDER_SHAPE));
+    let unit = if shape == Shape::Sphere { SPHERE_SIZE_M } else { BASE_SIZE_M };
+    let size = unit * number(&occluders.scale, of(keys::OCCLUDER_SCALE));
+    let turn = of(keys::OCCLUDER_ROTATION);
+    let turn = rotation_at(&occluders.rotation_deg, base_m, camera.position_m, turn);
+    // Turned about the middle of the base.
+    let middle_m = base_m + turn * DVec3::new(0.0, half_height(shape) * size, 0.0);
+    (shape, Placement { position_m: middle_m, rotation: turn, scale: DVec3::splat(size) })
 }
 
 /// Of a primitive in its model space.

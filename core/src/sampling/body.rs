@@ -2,10 +2,10 @@
 
 use super::growth;
 use super::keys;
+use super::linked::Draw;
 use super::people::Source;
 use super::quantile;
 use super::value::{item, number};
-use crate::base::rng::Draw;
 use crate::document::cast::MemberBody;
 use crate::document::{self, Ancestry, Auto, Origin};
 use crate::scene::Body;
@@ -76,7 +76,8 @@ fn ancestry(ancestry: &Ancestry, draw: Draw) -> [f64; 3] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::base::rng::{Draws, Key};
+    use crate::base::rng::Key;
+    use crate::sampling::linked::Draws;
 
     fn all(law: &Ancestry) -> Vec<[f64; 3]> {
         let draw = |i| Draws::new(2, i).of(Key::new("test"), 0);

@@ -3,9 +3,9 @@
 use glam::DVec3;
 
 use super::keys;
+use super::linked::Draws;
 use super::value::{number, rotation, vector};
 use crate::base::lens::Lens;
-use crate::base::rng::{Draw, Draws};
 use crate::document::{Brown, Distortion, Document, Fisheye};
 use crate::scene::Camera;
 
@@ -18,7 +18,13 @@ pub(super) fn camera(document: &Document, draws: Draws) -> Camera {
     Camera {
         width: document.image.width,
         height: document.image.height,
-        fov_vertical_deg: number(&camera.fov_vertical_deg, of(keys::CAMERA_FOV)),
+        fov_vertical_deg: match &camera.focal_length_mm {
+            None => number(&camera.fov_vertical_deg, of(keys::CAMERA_FOV)),
+            Some(focal_length_mm) => {
+                let f = number(focal_length_mm, of(keys::CAMERA_FOCAL_LENGTH));
+                fov_vertical_deg(f, camera.sensor_height_mm)
+            }
+        },
         position_m: vector(&camera.position_m, of(keys::CAMERA_POSITION))
             + vector(&camera.position_offset_m, of(keys::CAMERA_POSITION_OFFSET)),
         rotation: rotation(&camera.rotation_deg, offset_deg, of(keys::CAMERA_ROTATION)),
@@ -26,26 +32,44 @@ pub(super) fn camera(document: &Document, draws: Draws) -> Camera {
         distortion: camera
             .distortion
             .as_ref()
-            .map(|d| lens(d, of(keys::CAMERA_DISTORTION)))
+            .map(|d| lens(d, draws.random_if(camera.enabled)))
             .filter(|lens| !lens.is_neutral()),
     }
 }
 
-/// A lane for each coefficient.
-fn lens(distortion: &Distortion, draw: Draw) -> Lens {
+fn lens(distortion: &Distortion, draws: Draws) -> Lens {
+    let k = |param, key| number(param, draws.of(key, 0));
     match distortion {
         Distortion::Brown(Brown { k1, k2, p1, p2, k3 }) => Lens::Brown {
-            k1: number(k1, draw.lane(0)),
-            k2: number(k2, draw.lane(1)),
-            p1: number(p1, draw.lane(2)),
-            p2: number(p2, draw.lane(3)),
-            k3: number(k3, draw.lane(4)),
+            k1: k(k1, keys::LENS_K1),
+            k2: k(k2, keys::LENS_K2),
+            p1: k(p1, keys::LENS_P1),
+            p2: k(p2, keys::LENS_P2),
+            k3: k(k3, keys::LENS_K3),
         },
         Distortion::Fisheye(Fisheye { k1, k2, k3, k4 }) => Lens::Fisheye {
-            k1: number(k1, draw.lane(0)),
-            k2: number(k2, draw.lane(1)),
-            k3: number(k3, draw.lane(2)),
-            k4: number(k4, draw.lane(3)),
+            k1: k(k1, keys::LENS_K1),
+            k2: k(k2, keys::LENS_K2),
+            k3: k(k3, keys::LENS_K3),
+            k4: k(k4, keys::LENS_K4),
         },
+    }
+}
+
+/// The angle that a lens has on a sensor, degrees.
+fn fov_vertical_deg(focal_length_mm: f64, sensor_height_mm: f64) -> f64 {
+    2.0 * libm::atan2(0.5 * sensor_height_mm, focal_length_mm).to_degrees()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lenses_have_their_angles() {
+        for (focal_length_mm, expected_deg) in [(23.0, 55.1), (1.0, 170.5), (50.0, 27.0)] {
+            let got_deg = fov_vertical_deg(focal_length_mm, 24.0);
+            assert!((got_deg - expected_deg).abs() < 0.05, "{focal_length_mm} mm: {got_deg}");
+        }
     }
 }

@@ -99,9 +99,9 @@ fn sides(unit: &str, weight: f64) -> Vec<(String, f64)> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::base::rng::Draws;
     use crate::document::Choice;
     use crate::library::figure::Figure;
+    use crate::sampling::linked::Draws;
 
     #[test]
     fn every_unit_is_one_of_the_figure_and_small() {

@@ -143,7 +143,20 @@ keys! {
     SATURATION = "post.saturation",
     GRAIN = "post.grain",
     GRAIN_NOISE = "post.grain.noise",
-    CAMERA_DISTORTION = "camera.distortion",
+    LENS_K1 = "camera.distortion.k1",
+    LENS_K2 = "camera.distortion.k2",
+    LENS_K3 = "camera.distortion.k3",
+    LENS_K4 = "camera.distortion.k4",
+    LENS_P1 = "camera.distortion.p1",
+    LENS_P2 = "camera.distortion.p2",
+    PERSON_CHOSEN = "people.placement.chosen",
+    PERSON_IN_VIEW = "people.placement.in_view",
+    OCCLUDER_CHOSEN = "occluders.placement.chosen",
+    CAMERA_FOCAL_LENGTH = "camera.focal_length",
+    SUN_TEMPERATURE = "lights.sun.temperature",
+    LAMP_TEMPERATURE = "lights.lamp.temperature",
+    JPEG_QUALITY = "output.jpeg_quality",
+    OCCLUDER_IN_VIEW = "occluders.placement.in_view",
 }
 
 #[cfg(test)]

@@ -3,18 +3,18 @@
 use glam::{DQuat, DVec3};
 
 use super::background::asset;
-use super::keys;
+use super::linked::{Draw, Draws};
 use super::value::{color, flag, number, vector};
+use super::{blackbody, keys};
 use crate::base::math::rotation_from_euler_deg;
-use crate::base::rng::Draws;
 use crate::document;
-use crate::document::{MovingLight, SunDirection};
+use crate::document::{MovingLight, Param, SunDirection};
 use crate::scene::{
     Environment, EnvironmentImage, EnvironmentSource, Lights, PointLight, Sky, Sun,
 };
 
 /// The slot of the moving lamp among the lamps, beyond all that a document may list.
-const MOVING: u32 = 1 << 16;
+pub(super) const MOVING: u32 = 1 << 16;
 /// The id of the computed sky, beside those of pictures.
 pub(super) const SKY: &str = "sky";
 
@@ -26,7 +26,11 @@ pub(super) fn lights(lights: &document::Lights, pictures: &[String], draws: Draw
             points.push(PointLight {
                 position_m: vector(&lamp.position_m, draws.of(keys::LAMP_POSITION, slot)),
                 intensity_cd: number(&lamp.intensity_cd, draws.of(keys::LAMP_INTENSITY, slot)),
-                color: color(&lamp.color, draws.of(keys::LAMP_COLOR, slot)),
+                color: glowing(
+                    color(&lamp.color, draws.of(keys::LAMP_COLOR, slot)),
+                    lamp.temperature_k.as_ref(),
+                    draws.of(keys::LAMP_TEMPERATURE, slot),
+                ),
                 range_m: lamp.range_m,
                 radius_m: lamp.radius_m,
             });
@@ -46,7 +50,11 @@ fn moving(lamp: &MovingLight, draws: Draws) -> Option<PointLight> {
         position_m: vector(&lamp.position_m, of(keys::LAMP_POSITION))
             + vector(&lamp.position_offset_m, of(keys::LAMP_POSITION_OFFSET)),
         intensity_cd: number(&lamp.intensity_cd, of(keys::LAMP_INTENSITY)),
-        color: color(&lamp.color, of(keys::LAMP_COLOR)),
+        color: glowing(
+            color(&lamp.color, of(keys::LAMP_COLOR)),
+            lamp.temperature_k.as_ref(),
+            of(keys::LAMP_TEMPERATURE),
+        ),
         range_m: lamp.range_m,
         radius_m: lamp.radius_m,
     })
@@ -73,9 +81,20 @@ fn sun(sun: &document::Sun, draws: Draws) -> Sun {
     Sun {
         direction_to_sun: direction_to_sun(&sun.direction, draws),
         illuminance_lux: number(&sun.illuminance_lux, of(keys::SUN_ILLUMINANCE)),
-        color: color(&sun.color, of(keys::SUN_COLOR)),
+        color: glowing(
+            color(&sun.color, of(keys::SUN_COLOR)),
+            sun.temperature_k.as_ref(),
+            of(keys::SUN_TEMPERATURE),
+        ),
         shadow: sun.shadow,
     }
+}
+
+/// A colour times that of a glowing body, where a temperature is given.
+fn glowing(color: [f64; 3], temperature_k: Option<&Param>, draw: Draw) -> [f64; 3] {
+    let Some(temperature_k) = temperature_k else { return color };
+    let tint = blackbody::tint(number(temperature_k, draw));
+    [0, 1, 2].map(|i| color[i] * tint[i])
 }
 
 /// Towards a sun at an azimuth (clockwise from +Z over -X) and an elevation.

@@ -4,11 +4,12 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use super::expression::face_units;
 use super::keys;
+use super::linked::Draw;
 use super::people::{PersonTraits, Source};
 use super::quantile;
 use super::style;
 use super::value::{color, flag, item, linear, number};
-use crate::base::rng::{Draw, Stream};
+use crate::base::rng::Stream;
 use crate::document::cast::{FixedColor, MemberLook};
 use crate::document::{self, Auto, Choice};
 use crate::scene::{Headwear, Look};
@@ -357,14 +358,15 @@ fn face_shape(look: &document::Look, shapes: &[FaceShape], source: Source) -> Ve
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::base::rng::{Draws, Key};
+    use crate::base::rng::Key;
+    use crate::sampling::linked::Draws;
     use crate::scene::Sex;
 
     fn traits(sex: Sex, age_years: f64, ancestry: [f64; 3]) -> PersonTraits {
         PersonTraits { sex, age_years, ancestry }
     }
 
-    fn draws() -> impl Iterator<Item = Draw> {
+    fn draws() -> impl Iterator<Item = Draw<'static>> {
         (0..5000).map(|i| Draws::new(8, i).of(Key::new("test"), 0))
     }
 

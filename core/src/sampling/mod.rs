@@ -6,12 +6,13 @@
 
 use std::sync::Arc;
 
-use crate::base::rng::Draws;
 use crate::document::cast::Member;
-use crate::document::{Choice, Document, Problem, file::Problems, validate};
+use crate::document::{Choice, Distribution, Document, Problem, file::Problems, params, validate};
 use crate::scene::{Person, Scene};
 
+mod address;
 mod background;
+mod blackbody;
 mod body;
 mod camera;
 mod cast;
@@ -19,19 +20,22 @@ mod expression;
 mod growth;
 mod keys;
 mod lights;
+mod linked;
 mod look;
 mod outfit;
 mod outfit_table;
+mod output;
 mod people;
 mod place;
 mod poisson_disk;
 mod pose;
 mod post;
 mod quantile;
+mod solid;
 mod style;
 mod value;
 
-pub use value::number;
+use linked::{Draws, Links};
 
 /// The names of all assets that a document may use, each list in a stable order: it is part of
 /// what a seed means.
@@ -92,6 +96,7 @@ pub struct Sampler {
     document: Arc<Document>,
     catalogue: Catalogue,
     faces: Vec<look::FaceShape>,
+    links: Links,
 }
 
 impl Sampler {
@@ -109,7 +114,8 @@ impl Sampler {
             return Err(SampleError::Assets(Problems(problems)));
         }
         let faces = look::face_shapes(&catalogue.face_targets);
-        Ok(Self { document, catalogue, faces })
+        let links = Links::new(&document);
+        Ok(Self { document, catalogue, faces, links })
     }
 
     /// The document.
@@ -121,17 +127,19 @@ impl Sampler {
     /// One frame. It depends on the document and the catalogue alone.
     #[must_use]
     pub fn scene(&self, frame: u32) -> Scene {
-        let Self { document, catalogue, faces } = self;
-        let draws = Draws::new(document.seed, frame);
+        let Self { document, catalogue, faces, links } = self;
+        let draws = Draws::linked(document.seed, frame, links);
+        let camera = camera::camera(document, draws);
         Scene {
             frame,
             seed: document.seed,
-            camera: camera::camera(document, draws),
+            camera,
             lights: lights::lights(&document.lights, &catalogue.environments, draws),
             exposure_ev100: post::exposure_ev100(&document.post, draws),
             post: post::post(&document.post, draws),
-            objects: background::objects(document, catalogue, draws),
-            people: people::people(&document.people, catalogue, faces, draws),
+            objects: background::objects(document, catalogue, draws, &camera),
+            people: people::people(&document.people, catalogue, faces, draws, &camera),
+            jpeg_quality: output::jpeg_quality(&document.output, draws),
         }
     }
 }
@@ -140,19 +148,20 @@ impl Sampler {
     /// Everybody who recurs over the frames, in the order of their ids, as the config could list
     /// them; nobody where nobody recurs. What an `each` sets is that of the slot of the same number.
     pub fn members(&self) -> impl ExactSizeIterator<Item = Member> {
-        let Self { document, catalogue, faces } = self;
+        let Self { document, catalogue, faces, links } = self;
         let count = document.people.identity_count().unwrap_or(0);
-        (0..count)
-            .map(move |id| people::member(&document.people, catalogue, faces, document.seed, id))
+        let of = move |id| Draws::linked(document.seed, id, links);
+        (0..count).map(move |id| people::member(&document.people, catalogue, faces, of(id), id))
     }
 
     /// Everybody who stands in a frame, by their instance ids (slot plus one), as the config could
     /// list them.
     #[must_use]
     pub fn members_of_frame(&self, frame: u32) -> Vec<(u32, Member)> {
-        let Self { document, catalogue, faces } = self;
-        let people =
-            people::people(&document.people, catalogue, faces, Draws::new(document.seed, frame));
+        let Self { document, catalogue, faces, links } = self;
+        let draws = Draws::linked(document.seed, frame, links);
+        let camera = camera::camera(document, draws);
+        let people = people::people(&document.people, catalogue, faces, draws, &camera);
         let member = |p: Person| {
             let what = (&p.body, &p.look, &p.outfit);
             (p.slot + 1, cast::member(p.name.as_deref(), what, &cast::dyed(&p.outfit), catalogue))
@@ -164,20 +173,17 @@ impl Sampler {
 /// How many people and occluders a frame holds. The document must be valid.
 #[must_use]
 pub fn counts(document: &Document, frame: u32) -> Counts {
-    let draws = Draws::new(document.seed, frame);
-    let (people, people_wanted) = if document.people.enabled {
-        let places = place::places(&document.people.placement, &place::PEOPLE, draws);
-        (places.points.len() as u32, places.wanted)
-    } else {
-        (0, 0)
-    };
-    let (occluders, occluders_wanted) = if document.occluders.enabled {
-        let places = place::places(&document.occluders.placement, &place::OCCLUDERS, draws);
-        (places.points.len() as u32, places.wanted)
-    } else {
-        (0, 0)
-    };
-    Counts { people_wanted, people, occluders_wanted, occluders }
+    let links = Links::new(document);
+    let draws = Draws::linked(document.seed, frame, &links);
+    let camera = camera::camera(document, draws);
+    let people = people::Standing::new(&document.people, draws, &camera).places();
+    let occluders = background::occluder_places(document, draws, &camera);
+    Counts {
+        people_wanted: people.wanted,
+        people: people.points.len() as u32,
+        occluders_wanted: occluders.wanted,
+        occluders: occluders.points.len() as u32,
+    }
 }
 
 /// The ids in a document that a catalogue does not hold, and wishes for `"any"` asset of a kind
@@ -208,7 +214,7 @@ pub fn check_assets(document: &Document, catalogue: &Catalogue) -> Vec<Problem> 
         (people.enabled, "people.wardrobe.bottom.pattern", &bottom.pattern, patterns),
         (people.enabled, "people.wardrobe.outer.pattern", &outer.pattern, patterns),
     ];
-    let mut problems = Vec::new();
+    let mut problems = unread(document);
     for (enabled, path, choice, (kind, known, none_allowed)) in all {
         if enabled {
             check_choice(path, choice, kind, known, none_allowed, &mut problems);
@@ -224,6 +230,15 @@ pub fn check_assets(document: &Document, catalogue: &Catalogue) -> Vec<Problem> 
         }
     }
     problems
+}
+
+/// Tables that nobody has read.
+fn unread(document: &Document) -> Vec<Problem> {
+    let params = params(document);
+    let laws = params.iter().flat_map(|(path, param)| param.laws(path));
+    let tables = laws.filter(|(_, law)| matches!(law, Distribution::Empirical(_)));
+    let what = "the file was not read; load the config from its own file";
+    tables.map(|(path, _)| Problem::new(format!("{path}.empirical"), what)).collect()
 }
 
 /// Clips and poses share one set of ids.

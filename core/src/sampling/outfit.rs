@@ -4,10 +4,11 @@ use std::sync::LazyLock;
 
 use super::background::asset;
 use super::cast::PLAIN;
+use super::linked::Draw;
 use super::people::{PersonTraits, Source};
 use super::value::{color, flag, item, number};
 use super::{keys, outfit_table, quantile};
-use crate::base::rng::{Draw, Key};
+use crate::base::rng::Key;
 use crate::document::cast::{FixedColor, MemberWardrobe};
 use crate::document::{self, Auto, Choice, Color, ColorLaw, OutfitRow, Param, Wardrobe};
 use crate::scene::{Bottom, BottomKind, Outer, OuterKind, Outfit, Shoes, Top, TopKind};
@@ -52,8 +53,8 @@ pub(super) fn outfit(
 struct Drawing<'a> {
     known: &'a MemberWardrobe,
     patterns: &'a [String],
-    lasting: Source,
-    here: Source,
+    lasting: Source<'a>,
+    here: Source<'a>,
 }
 
 impl Drawing<'_> {

@@ -2,49 +2,109 @@
 
 use glam::DVec3;
 
+use super::linked::{Draw, Draws, Place, Somebody, Spot};
 use super::look::FaceShape;
-use super::place::{PEOPLE, places};
-use super::value::{number, rotation};
+use super::place::{PEOPLE, Places, Setting, places};
+use super::solid::Solid;
+use super::value::{number, rotation_at};
 use super::{Catalogue, body, cast, keys, look, outfit, pose};
-use crate::base::rng::{Draw, Draws, Key};
+use crate::base::rng::{self, Key};
 use crate::document::{self, cast::Member};
-use crate::scene::{Body, Look, Outfit, Person, Placement, Sex};
+use crate::scene::{Body, Camera, Look, Outfit, Person, Placement, Sex};
 
 pub(super) fn people(
     people: &document::People,
     catalogue: &Catalogue,
     faces: &[FaceShape],
     draws: Draws,
+    camera: &Camera,
 ) -> Vec<Person> {
-    if !people.enabled {
-        return Vec::new();
-    }
     let company = Company { people, catalogue, faces };
-    let places = places(&people.placement, &PEOPLE, draws).points;
-    let identities = people.identity_count().map(|count| Identities::new(count, draws));
+    let standing = Standing::new(people, draws, camera);
     let person = |(slot, position_m)| {
-        let here = Source::new(draws, slot);
-        let identity = identities.map(|i| i.of_slot(slot));
-        // Whoever recurs has the numbers of an identity instead of those of a frame.
-        let lasting = identity.map_or(here, |id| Source::of_identity(draws.seed(), id, slot));
-        let (body, look, outfit) = company.person(identity, lasting, here);
-        let turn = draws.of(keys::PERSON_ROTATION, slot);
+        let who = standing.who(slot);
+        let (body, look, outfit) = company.person(who.known, who.lasting, who.here);
         Person {
             slot,
-            identity,
-            name: identity.and_then(|id| company.listed(id)).and_then(|m| m.name.clone()),
-            placement: Placement {
-                position_m,
-                rotation: rotation(&people.rotation_deg, DVec3::ZERO, turn),
-                scale: DVec3::splat(number(&people.scale, draws.of(keys::PERSON_SCALE, slot))),
-            },
+            identity: who.identity,
+            name: who.known.name.clone(),
+            placement: standing.placement(who, position_m),
             body,
             look,
             outfit,
-            pose: pose::pose(&people.pose, catalogue, here),
+            pose: pose::pose(&people.pose, catalogue, who.here),
         }
     };
-    places.into_iter().map(person).collect()
+    standing.places().points.into_iter().map(person).collect()
+}
+
+/// Who stands where in a frame, before anything else is known of anybody.
+pub(super) struct Standing<'a> {
+    people: &'a document::People,
+    draws: Draws<'a>,
+    camera: &'a Camera,
+    identities: Option<Identities>,
+    nobody: Member,
+}
+
+/// Who stands in a slot.
+#[derive(Clone, Copy)]
+struct Who<'a> {
+    identity: Option<u32>,
+    known: &'a Member,
+    here: Source<'a>,
+    lasting: Source<'a>,
+}
+
+impl<'a> Standing<'a> {
+    pub(super) fn new(people: &'a document::People, draws: Draws<'a>, camera: &'a Camera) -> Self {
+        let identities = people.identity_count().map(|count| Identities::new(count, draws));
+        Self { people, draws, camera, identities, nobody: Member::default() }
+    }
+
+    fn who(&self, slot: u32) -> Who<'_> {
+        let draws = self.draws;
+        let identity = self.identities.map(|i| i.of_slot(slot));
+        let listed = identity.and_then(|id| self.people.cast.get(id as usize));
+        let known = listed.unwrap_or(&self.nobody);
+        let here = Spot { draws: draws.keyed(), slot, turn: slot };
+        // Whoever recurs has the numbers of an identity instead of those of a frame.
+        let lasting = identity.map_or(here, |id| of_identity(draws.seed(), id, slot));
+        let draws = draws.at(Place::Person(Somebody { here, lasting, known }));
+        let [here, lasting] = [here, lasting].map(|spot| Source { draws, spot });
+        Who { identity, known, here, lasting }
+    }
+
+    fn placement(&self, who: Who, position_m: DVec3) -> Placement {
+        let turn = who.here.of(keys::PERSON_ROTATION);
+        let camera_m = self.camera.position_m;
+        Placement {
+            position_m,
+            rotation: rotation_at(&self.people.rotation_deg, position_m, camera_m, turn),
+            scale: DVec3::splat(number(&self.people.scale, who.here.of(keys::PERSON_SCALE))),
+        }
+    }
+
+    fn solid(&self, slot: u32, position_m: DVec3) -> Solid {
+        let Placement { rotation, scale, .. } = self.placement(self.who(slot), position_m);
+        Solid::of_person(position_m, rotation, scale.x)
+    }
+
+    /// Where people stand; nowhere if there are none.
+    pub(super) fn places(&self) -> Places {
+        if !self.people.enabled {
+            return Places { points: Vec::new(), wanted: 0 };
+        }
+        let solid = |slot, position_m| self.solid(slot, position_m);
+        let setting = Setting { camera: self.camera, taken: &[], solid: &solid };
+        places(&self.people.placement, &PEOPLE, self.draws, setting)
+    }
+
+    /// The room that people take.
+    pub(super) fn solids(&self) -> Vec<Solid> {
+        let points = self.places().points.into_iter();
+        points.map(|(slot, position_m)| self.solid(slot, position_m)).collect()
+    }
 }
 
 /// Somebody who recurs, as a complete member; `each` in the document counts identities here.
@@ -52,14 +112,16 @@ pub(super) fn member(
     people: &document::People,
     catalogue: &Catalogue,
     faces: &[FaceShape],
-    seed: u64,
+    draws: Draws,
     id: u32,
 ) -> Member {
     let company = Company { people, catalogue, faces };
-    let lasting = Source::of_identity(seed, id, id);
-    let (body, look, outfit) = company.person(Some(id), lasting, lasting);
     let nobody = Member::default();
     let known = company.listed(id).unwrap_or(&nobody);
+    let spot = of_identity(draws.seed(), id, id);
+    let draws = draws.at(Place::Person(Somebody { here: spot, lasting: spot, known }));
+    let lasting = Source { draws, spot };
+    let (body, look, outfit) = company.person(known, lasting, lasting);
     // Colours and patterns that are drawn do not last.
     let what = (&body, &look, &outfit);
     cast::member(known.name.as_deref(), what, &known.wardrobe, catalogue)
@@ -79,10 +141,8 @@ impl<'a> Company<'a> {
     }
 
     /// Body, look and clothes of somebody.
-    fn person(self, identity: Option<u32>, lasting: Source, here: Source) -> (Body, Look, Outfit) {
+    fn person(self, known: &Member, lasting: Source, here: Source) -> (Body, Look, Outfit) {
         let Self { people, catalogue, faces } = self;
-        let nobody = Member::default();
-        let known = identity.and_then(|id| self.listed(id)).unwrap_or(&nobody);
         let body = body::body(&people.body, &known.body, lasting.random_if(people.body.enabled));
         let traits = PersonTraits::new(&body);
         let look = look::look(&people.look, &known.look, faces, traits, lasting);
@@ -93,31 +153,31 @@ impl<'a> Company<'a> {
     }
 }
 
-/// Where a person's random numbers come from: a slot of the frame, or what lasts over frames.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Source {
-    draws: Draws,
-    slot: u32,
-    /// The slot of the frame, whatever the numbers are keyed by.
-    turn: u32,
+/// What an identity is drawn from, in a slot.
+const fn of_identity(seed: u64, id: u32, turn: u32) -> Spot {
+    Spot { draws: rng::Draws::new(seed, id), slot: 0, turn }
 }
 
-impl Source {
-    pub(super) const fn new(draws: Draws, slot: u32) -> Self {
-        Self { draws, slot, turn: slot }
-    }
+/// Where a person's random numbers come from: a slot of the frame, or what lasts over frames.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Source<'a> {
+    draws: Draws<'a>,
+    spot: Spot,
+}
 
-    /// What an identity is drawn from, in a slot.
-    const fn of_identity(seed: u64, id: u32, turn: u32) -> Self {
-        Self { turn, ..Self::new(Draws::new(seed, id), 0) }
+impl<'a> Source<'a> {
+    /// Of a slot of a frame, for somebody of whom nothing is known.
+    #[cfg(test)]
+    pub(super) const fn new(draws: Draws<'a>, slot: u32) -> Self {
+        Self { draws, spot: Spot { draws: draws.keyed(), slot, turn: slot } }
     }
 
     pub(super) const fn random_if(self, random: bool) -> Self {
-        Self { draws: self.draws.random_if(random), ..self }
+        Self { spot: self.spot.random_if(random), ..self }
     }
 
-    pub(super) const fn of(self, key: Key) -> Draw {
-        self.draws.of(key, self.slot).in_turn(self.turn)
+    pub(super) const fn of(self, key: Key) -> Draw<'a> {
+        self.draws.draw(self.spot.of(key))
     }
 }
 

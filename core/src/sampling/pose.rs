@@ -1,9 +1,9 @@
 //! What a person does.
 
+use super::linked::Draw;
 use super::people::Source;
 use super::value::{flag, item, number};
 use super::{Catalogue, keys, quantile};
-use crate::base::rng::Draw;
 use crate::document::{self, Auto, Choice, Normal};
 use crate::library::pose::angle::Angle;
 use crate::scene::{HandShape, Pose, PoseBlend};

@@ -1,8 +1,8 @@
 //! Exposure, and what else happens to the light behind the lens.
 
 use super::keys;
+use super::linked::Draws;
 use super::value::number;
-use crate::base::rng::Draws;
 use crate::document;
 use crate::scene::Post;
 

@@ -5,9 +5,9 @@
 //! in man", 1951; Norwood, "Male pattern baldness", 1975), coarsely.
 
 use super::growth::interpolate;
+use super::linked::Draw;
 use super::people::PersonTraits;
 use super::quantile;
-use crate::base::rng::Draw;
 use crate::scene::{BeardStyle, Glasses, HairStyle, HeadwearKind, Sex};
 
 fn pick<T: Copy>(weights: &[(T, f64)], draw: Draw) -> T {
@@ -126,7 +126,8 @@ pub(super) fn glasses(traits: PersonTraits, draw: Draw) -> Glasses {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::base::rng::{Draws, Key};
+    use crate::base::rng::Key;
+    use crate::sampling::linked::Draws;
 
     const ANYONE: [f64; 3] = [0.2, 0.3, 0.5];
     const AFRICAN: [f64; 3] = [0.9, 0.1, 0.0];

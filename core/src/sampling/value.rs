@@ -1,23 +1,24 @@
 //! Drawing the document's parameters: numbers, vectors, rotations, colours, choices.
 //!
-//! A parameter spends the uniform number of its own draw; each mixture around it one more.
+//! A parameter spends the uniform number of its own draw; each mixture around it one more. A linked one
+//! draws what it looks at again, from that parameter's own numbers.
 
 use glam::{DQuat, DVec3};
 
+use super::linked::Draw;
 use super::quantile;
 use crate::base::color::linear_rgb;
 use crate::base::math::rotation_from_euler_deg;
-use crate::base::rng::Draw;
 use crate::document::{
-    Chance, Choice, Color, ColorLaw, Distribution, Flag, Param, Region, Rotation, Vector, Weighted,
+    Chance, Choice, Color, ColorLaw, Distribution, Flag, JointRotation, Param, Region, Rotation,
+    Towards, Vector, Weighted,
 };
 
 /// The lane in which colours choose among their parts; below it are their channels.
 const COLOR_PART: u16 = 3;
 
 /// The number that a parameter takes in a draw.
-#[must_use]
-pub fn number(param: &Param, draw: Draw) -> f64 {
+pub(super) fn number(param: &Param, draw: Draw) -> f64 {
     number_at(param, draw, 0)
 }
 
@@ -44,6 +45,8 @@ fn number_at(param: &Param, draw: Draw, index: u16) -> f64 {
             let part = quantile::index(u, parts.iter().map(|p| p.0));
             number_at(&parts[part].1, draw, index + 1)
         }
+        Distribution::Given(given) => number_at(given.row(draw.value_of(&given.of)), draw, index),
+        Distribution::Empirical(_) => unreachable!("files are read before anything is drawn"),
     }
 }
 
@@ -61,7 +64,7 @@ pub(super) fn flag(flag: &Flag, draw: Draw) -> bool {
 }
 
 /// The item that a choice falls on.
-pub(super) fn item<T>(choice: &Choice<T>, draw: Draw) -> &T {
+pub(super) fn item<'a, T>(choice: &'a Choice<T>, draw: Draw) -> &'a T {
     match choice {
         Choice::Always(item) => item,
         Choice::Random(Weighted::Choice(items)) => {
@@ -72,7 +75,7 @@ pub(super) fn item<T>(choice: &Choice<T>, draw: Draw) -> &T {
 }
 
 /// The item whose turn it is; the middle one where nothing is to vary.
-fn in_turn<T>(items: &[T], draw: Draw) -> &T {
+fn in_turn<'a, T>(items: &'a [T], draw: Draw) -> &'a T {
     let turn = if draw.is_middle() { items.len() / 2 } else { draw.turn() as usize };
     &items[turn % items.len()]
 }
@@ -127,11 +130,31 @@ pub(super) fn rotation(rotation: &Rotation, offset_deg: DVec3, draw: Draw) -> DQ
     let euler = |a: DVec3| rotation_from_euler_deg(a.x, a.y, a.z);
     match rotation {
         Rotation::Euler(params) => euler(axes(params, draw) + offset_deg),
+        Rotation::Joint(JointRotation::Facing(facing)) => {
+            euler(offset_deg + DVec3::Y * number(&facing.yaw_deg, draw))
+        }
         Rotation::Joint(_) if draw.is_middle() => euler(offset_deg),
-        Rotation::Joint(_) => {
+        Rotation::Joint(JointRotation::Rotation(_)) => {
             uniform_rotation([0, 1, 2].map(|i| draw.lane(i).uniform())) * euler(offset_deg)
         }
     }
+}
+
+/// The orientation of what stands somewhere. What faces something is turned about the vertical so that
+/// its +Z points there; straight above or below there is no such turn, and it stays as it is.
+pub(super) fn rotation_at(law: &Rotation, position_m: DVec3, camera_m: DVec3, draw: Draw) -> DQuat {
+    let towards_deg = match law {
+        Rotation::Joint(JointRotation::Facing(facing)) => {
+            let target = match facing.towards {
+                Towards::Camera(_) => camera_m,
+                Towards::Point(point) => DVec3::from_array(point),
+            };
+            let way = target - position_m;
+            libm::atan2(way.x, way.z).to_degrees()
+        }
+        Rotation::Euler(_) | Rotation::Joint(JointRotation::Rotation(_)) => 0.0,
+    };
+    rotation(law, DVec3::Y * towards_deg, draw)
 }
 
 /// Uniform on SO(3) from three uniform numbers (Shoemake, "Uniform random rotations", Graphics
@@ -183,11 +206,12 @@ fn srgb_from_hsv([hue_deg, saturation, value]: [f64; 3]) -> [f64; 3] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::base::rng::{Draws, Key};
+    use crate::base::rng::Key;
+    use crate::sampling::linked::Draws;
 
     const N: u32 = 20_000;
 
-    fn draws() -> impl Iterator<Item = Draw> {
+    fn draws() -> impl Iterator<Item = Draw<'static>> {
         (0..N).map(|i| Draws::new(77, i).of(Key::new("test"), 0))
     }
 

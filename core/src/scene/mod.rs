@@ -39,6 +39,9 @@ pub struct Scene {
     pub objects: Vec<Object>,
     /// People.
     pub people: Vec<Person>,
+    /// Quality of the picture's JPEG, 1..100, where it is drawn anew for each frame.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub jpeg_quality: Option<u8>,
 }
 
 /// Where something stands: `world_from_model = translate(position) * rotate * scale`.

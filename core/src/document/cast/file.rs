@@ -4,59 +4,31 @@
 //! {"name": "maria", "body": {"sex": "female", "age_years": 34}, "look": {"hair": "bun"}}
 //! ```
 //!
-//! A file holds one person or a list `[ ]` of people. [`read_all`] puts them in the place of the
-//! entries that name them, so that what follows knows nothing of files.
+//! A file holds one person or a list `[ ]` of people, who take the place of the entry that names it.
 
-use std::path::{Path, PathBuf};
 use std::sync::LazyLock;
 
 use serde_json::Value;
 
 use super::Member;
 use crate::base::hash::content_hash;
-use crate::document::file::{self, Loaded, MAX_BYTES, Problems};
-use crate::document::{Document, Problem, check, validate};
+use crate::document::settle::{self, Files, SourceKind};
+use crate::document::{Problem, check, validate};
 
-/// A file that people were read from.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Source {
-    /// As the config names it.
-    pub name: String,
-    /// BLAKE3 hash of its content, 64 hexadecimal digits.
-    pub content_hash: String,
-}
-
-/// A document whose people are all in it, and the files that some of them come from.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Settled {
-    /// The document.
-    pub document: Document,
-    /// Each file once, in the order of the document.
-    pub sources: Vec<Source>,
-}
-
-/// Reads the files that the document's cast names.
-///
-/// # Errors
-/// When a file is missing, cannot be read or holds no people, and when the document makes no sense
-/// with the people of the files in it. Each problem names the entry and the file.
-pub fn read_all(loaded: Loaded) -> Result<Settled, Problems> {
-    let folders: Vec<PathBuf> =
-        std::iter::once(loaded.folder.clone()).chain(loaded.asset_folders()).collect();
-    let mut document = loaded.document;
-    let (mut sources, mut problems) = (Vec::<Source>::new(), Vec::new());
-    let mut cast = Vec::new();
-    for (i, entry) in std::mem::take(&mut document.people.cast).into_iter().enumerate() {
+/// Reads the files that a cast names and puts the people in their places. What is wrong with them,
+/// by entry and file.
+pub(in crate::document) fn fill(cast: &mut Vec<Member>, files: &mut Files) -> Vec<Problem> {
+    let mut problems = Vec::new();
+    let mut all = Vec::new();
+    for (i, entry) in std::mem::take(cast).into_iter().enumerate() {
         let Some(name) = entry.file.clone() else {
-            cast.push(entry);
+            all.push(entry);
             continue;
         };
-        match read(&name, &folders).and_then(|read| Ok((merge(entry, read.0)?, read.1))) {
+        match read(&name, files).and_then(|read| Ok((merge(entry, read.0)?, read.1))) {
             Ok((members, content_hash)) => {
-                cast.extend(members);
-                if sources.iter().all(|s| s.name != name) {
-                    sources.push(Source { name, content_hash });
-                }
+                all.extend(members);
+                files.add(&name, SourceKind::People, content_hash);
             }
             Err(found) => {
                 let at = format!("people.cast[{i}].file");
@@ -64,11 +36,8 @@ pub fn read_all(loaded: Loaded) -> Result<Settled, Problems> {
             }
         }
     }
-    document.people.cast = cast;
-    if problems.is_empty() {
-        problems = validate(&document);
-    }
-    if problems.is_empty() { Ok(Settled { document, sources }) } else { Err(Problems(problems)) }
+    *cast = all;
+    problems
 }
 
 /// The people that an entry with a file stands for.
@@ -88,32 +57,16 @@ fn merge(entry: Member, mut read: Vec<Member>) -> Result<Vec<Member>, Vec<String
 }
 
 /// The people of a file, and the hash of its content; else what is wrong with it.
-fn read(name: &str, folders: &[PathBuf]) -> Result<(Vec<Member>, String), Vec<String>> {
-    let candidates: Vec<PathBuf> = folders.iter().map(|folder| folder.join(name)).collect();
-    let Some(path) = candidates.iter().find(|path| path.exists()) else {
-        let tried: Vec<String> = candidates.iter().map(|p| p.display().to_string()).collect();
-        let tried = tried.join(", ");
-        return Err(vec![format!(
-            "there is no such file ({tried}); a path starts at the config's folder or at a folder \
-             of `assets`"
-        )]);
-    };
-    let bytes = bytes(path).map_err(|what| vec![format!("{}: {what}", path.display())])?;
+fn read(name: &str, files: &Files) -> Result<(Vec<Member>, String), Vec<String>> {
+    let path = files.find(name).map_err(|what| vec![what])?;
+    let (expected, otherwise) =
+        ("a file of people such as maria.json", "split it into several files");
+    let bytes = settle::bytes(&path, expected, otherwise)
+        .map_err(|what| vec![format!("{}: {what}", path.display())])?;
     let members = parse(&bytes).map_err(|problems| {
         problems.iter().map(|what| format!("{}: {what}", path.display())).collect::<Vec<_>>()
     })?;
     Ok((members, content_hash(&bytes)))
-}
-
-fn bytes(path: &Path) -> Result<Vec<u8>, String> {
-    if path.is_dir() {
-        return Err("is a folder; expected a file of people such as maria.json".to_owned());
-    }
-    match file::read(path) {
-        Ok(Some(bytes)) => Ok(bytes),
-        Ok(None) => Err(format!("has more than {MAX_BYTES} bytes; split it into several files")),
-        Err(e) => Err(format!("cannot be read: {e}")),
-    }
 }
 
 /// The people in a file's content; else everything that is wrong with it.
@@ -168,6 +121,8 @@ mod tests {
     use std::fs;
 
     use super::*;
+    use crate::document::file::{self, MAX_BYTES, Problems};
+    use crate::document::settle::{Settled, read_all};
 
     /// A folder with a config that has a cast, and files beside it; what loading it says.
     fn load(cast: &str, files: &[(&str, &str)]) -> Result<Settled, Problems> {
@@ -244,7 +199,8 @@ mod tests {
         let dir = tempfile::tempdir().unwrap();
         let path = dir.path().join("large.json");
         fs::File::create(&path).unwrap().set_len(MAX_BYTES + 1).unwrap();
-        let error = read("large.json", &[dir.path().to_owned()]).unwrap_err();
+        let files = Files { folders: vec![dir.path().to_owned()], sources: Vec::new() };
+        let error = read("large.json", &files).unwrap_err();
         assert!(error[0].contains("large.json: has more than"), "{error:?}");
     }
 }

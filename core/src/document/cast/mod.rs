@@ -54,6 +54,33 @@ impl Member {
             wardrobe: self.wardrobe.or(other.wardrobe),
         }
     }
+
+    /// What it has in place of a parameter of the document, by the parameter's path; nothing for
+    /// what it leaves out.
+    #[must_use]
+    pub fn number(&self, path: &str) -> Option<f64> {
+        let MemberWardrobe { top, bottom, outer, shoes } = &self.wardrobe;
+        match path.strip_prefix("people.")? {
+            "body.age_years" => self.body.age_years,
+            "body.stature_m" => self.body.stature_m,
+            "body.bmi_kg_m2" => self.body.bmi_kg_m2,
+            "body.muscle" => self.body.muscle,
+            "body.proportions" => self.body.proportions,
+            "body.cup" => self.body.cup,
+            "body.firmness" => self.body.firmness,
+            "wardrobe.top.sleeve" => top.sleeve,
+            "wardrobe.top.neckline" => top.neckline,
+            "wardrobe.top.looseness_m" => top.looseness_m,
+            "wardrobe.top.hue_offset_deg" => top.hue_offset_deg,
+            "wardrobe.bottom.flare" => bottom.flare,
+            "wardrobe.bottom.looseness_m" => bottom.looseness_m,
+            "wardrobe.bottom.hue_offset_deg" => bottom.hue_offset_deg,
+            "wardrobe.outer.looseness_m" => outer.looseness_m,
+            "wardrobe.outer.hue_offset_deg" => outer.hue_offset_deg,
+            "wardrobe.shoes.socks" => shoes.socks,
+            _ => None,
+        }
+    }
 }
 
 /// The text of a file that holds one person.

@@ -84,6 +84,9 @@ fn other_document() -> Document {
             y_m: [1.0, 2.0],
             depth_m: Param::Constant(1.0),
             separation_m: 0.5,
+            count: None,
+            no_overlap: false,
+            in_view: 0.0,
         });
     }
     (d.people.enabled, d.occluders.enabled) = (false, false);

@@ -1,8 +1,11 @@
 //! The rules for single values: numbers, parameters, vectors, colours and choices.
 
+use std::collections::BTreeMap;
+
+use super::{ANGLE, POSITION};
 use crate::document::{
-    Chance, Choice, Color, ColorLaw, Distribution, Flag, Param, Problem, Region, Rotation, Vector,
-    Weighted,
+    Chance, Choice, Color, ColorLaw, Distribution, Empirical, Flag, Given, JointRotation, Param,
+    Problem, Region, Rotation, Towards, Vector, Weighted,
 };
 
 /// Mixtures of mixtures of mixtures... end here.
@@ -44,10 +47,11 @@ impl Range {
     }
 }
 
-/// Collects problems. Its methods say whether the value was right.
+/// Collects problems, and every parameter by its path. Its methods say whether the value was right.
 #[derive(Default)]
 pub(super) struct Check {
     pub(super) problems: Vec<Problem>,
+    pub(super) params: BTreeMap<String, Param>,
 }
 
 impl Check {
@@ -94,12 +98,18 @@ impl Check {
     }
 
     pub(super) fn param(&mut self, path: &str, param: &Param, range: Range) -> bool {
+        self.params.insert(path.to_owned(), param.clone());
         let distribution = match param {
             Param::Constant(value) => return self.number(path, *value, range),
             Param::Random(distribution) => distribution,
         };
         if !self.distribution(path, distribution, 0) {
             return false;
+        }
+        let unread = |law: &Distribution| matches!(law, Distribution::Empirical(_));
+        if param.laws("").iter().any(|(_, law)| unread(law)) {
+            // What may be drawn shows when the file has been read.
+            return true;
         }
         let (min, max) = param.bounds();
         let Some(outside) = [min, max].into_iter().find(|v| !range.holds(*v)) else {
@@ -175,14 +185,58 @@ impl Check {
                     return false;
                 }
                 parts.iter().enumerate().fold(true, |good, (i, (_, part))| {
-                    let path = format!("{path}[{i}][1]");
-                    good & match part {
-                        Param::Constant(value) => self.finite(&path, *value),
-                        Param::Random(d) => self.distribution(&path, d, depth + 1),
-                    }
+                    self.part(&format!("{path}[{i}][1]"), part, depth) & good
                 })
             }
+            Distribution::Empirical(file) => self.empirical(&format!("{path}.empirical"), file),
+            Distribution::Given(given) => self.given(&format!("{path}.given"), given, depth),
         }
+    }
+
+    /// A parameter within a distribution.
+    fn part(&mut self, path: &str, part: &Param, depth: u32) -> bool {
+        match part {
+            Param::Constant(value) => self.finite(path, *value),
+            Param::Random(d) => self.distribution(path, d, depth + 1),
+        }
+    }
+
+    fn empirical(&mut self, path: &str, empirical: &Empirical) -> bool {
+        let Empirical { file, column, weight } = empirical;
+        let names =
+            [("file", Some(file)), ("column", column.as_ref()), ("weight", weight.as_ref())];
+        names.into_iter().fold(true, |good, (field, name)| {
+            let empty = name.is_some_and(|name| name.trim().is_empty());
+            let what = "must not be an empty text";
+            (!empty || self.report(&format!("{path}.{field}"), what)) & good
+        })
+    }
+
+    /// Rows that follow each other without a hole. What is looked at is [`super::links`]' business.
+    fn given(&mut self, path: &str, given: &Given, depth: u32) -> bool {
+        if depth >= MAX_DEPTH {
+            return self.report(path, format!("tables nest at most {MAX_DEPTH} deep"));
+        }
+        let path = format!("{path}.table");
+        if !self.some(&path, &given.table) {
+            return false;
+        }
+        let mut before: Option<f64> = None;
+        given.table.iter().enumerate().fold(true, |good, (i, (from, to, row))| {
+            let at = format!("{path}[{i}]");
+            let last = before.replace(*to);
+            let rows = self.interval(&at, [*from, *to], Range::from_to(-1e12, 1e12))
+                && last.is_none_or(|end| end == *from || self.seam(&at, end, *from));
+            self.part(&format!("{at}[2]"), row, depth) & rows & good
+        })
+    }
+
+    fn seam(&mut self, path: &str, end: f64, from: f64) -> bool {
+        let fault = if from > end { "leaves a hole after" } else { "overlaps" };
+        let what = format!(
+            "begins at {from} and {fault} the row before it, which ends at {end}; let it begin at {end}"
+        );
+        self.report(path, what)
     }
 
     fn finite(&mut self, path: &str, value: f64) -> bool {
@@ -291,8 +345,18 @@ impl Check {
 
     pub(super) fn rotation(&mut self, path: &str, rotation: &Rotation) -> bool {
         match rotation {
-            Rotation::Euler(axes) => self.axes(path, axes, Range::from_to(-3600.0, 3600.0)),
-            Rotation::Joint(_) => true,
+            Rotation::Euler(axes) => self.axes(path, axes, ANGLE),
+            Rotation::Joint(JointRotation::Rotation(_)) => true,
+            Rotation::Joint(JointRotation::Facing(facing)) => {
+                let path = format!("{path}.facing");
+                let there = match &facing.towards {
+                    Towards::Camera(_) => true,
+                    Towards::Point(point) => {
+                        self.numbers(&format!("{path}.towards"), point, POSITION)
+                    }
+                };
+                self.param(&format!("{path}.yaw_deg"), &facing.yaw_deg, ANGLE) & there
+            }
         }
     }
 

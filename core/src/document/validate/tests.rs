@@ -47,6 +47,27 @@ fn hostile_values_are_refused_with_their_path() {
             json!({"model": "fisheye", "k2": {"uniform": [0, 2000]}}),
             "camera.distortion.k2",
         ),
+        ("/camera/focal_length_mm", json!(0.1), "camera.focal_length_mm"),
+        ("/camera/focal_length_mm", json!({"uniform": [20, 1e5]}), "camera.focal_length_mm"),
+        ("/camera/sensor_height_mm", json!(0), "camera.sensor_height_mm"),
+        ("/lights/sun/temperature_k", json!(900), "lights.sun.temperature_k"),
+        ("/lights/points/2/temperature_k", json!(5e4), "lights.points[2].temperature_k"),
+        ("/output/jpeg_quality", json!({"uniform": [0, 100]}), "output.jpeg_quality"),
+        (
+            "/people/rotation_deg",
+            json!({"facing": {"towards": [0, 1e9, 0]}}),
+            "people.rotation_deg.facing.towards[1]",
+        ),
+        (
+            "/people/placement",
+            json!({"mode": "poisson_disk", "depth_m": 0, "separation_m": 3, "count": 501}),
+            "people.placement.count",
+        ),
+        (
+            "/people/placement",
+            json!({"mode": "poisson_disk", "depth_m": 0, "separation_m": 3, "in_view": 1.5}),
+            "people.placement.in_view",
+        ),
         ("/camera/position_m", json!([0, 1e300, 0]), "camera.position_m[1]"),
         (
             "/camera/position_offset_m",
