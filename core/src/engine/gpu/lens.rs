@@ -143,6 +143,6 @@ mod tests {
     #[test]
     fn a_square_of_pixels_is_what_eight_of_them_fill() {
         assert_eq!(SQUARE as usize, EIGHT);
-        assert_eq!(SQUARE, super::super::abi::TILE);
+        assert_eq!(SQUARE, crate::engine::gpu::abi::TILE);
     }
 }
