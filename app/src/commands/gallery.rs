@@ -37,8 +37,8 @@ struct Page {
     /// Folder of the pictures, from the page's.
     #[serde(default)]
     pictures_in: PathBuf,
-    /// Pictures become JPEG, reduced to a whole part of their width that is at least this many
-    /// pixels; PNG of full size if absent.
+    /// Pictures become JPEG, divided by a whole number to a height of at least this many pixels;
+    /// PNG of full size if absent.
     #[serde(default)]
     thumbnail_px: Option<u32>,
     sections: Vec<Section>,
@@ -217,10 +217,10 @@ fn cut(rgb: &[u8], width: u32, [left, top, right, bottom]: View) -> (Vec<u8>, [u
     (pixels, [right - left, bottom - top])
 }
 
-/// The picture divided by the largest whole number that leaves its width at `least`: means in
+/// The picture divided by the largest whole number that leaves its height at `least`: means in
 /// linear light.
 fn reduced(rgb: &[u8], [width, height]: [u32; 2], least: u32) -> (Vec<u8>, [u32; 2]) {
-    let step = (width / least.max(1)).clamp(1, height);
+    let step = (height / least.max(1)).clamp(1, width);
     let (w, h) = (width / step, height / step);
     let linear: [f32; 256] = std::array::from_fn(|v| linear_from_srgb(v as f32 / 255.0));
     let mut out = Vec::with_capacity((w * h * 3) as usize);
