@@ -129,12 +129,13 @@ fn from_float12(v: i16) -> f32 {
 
 /// What is expected at a place of which the values above and to the left are known.
 fn predicted(plane: &[i16], at: usize, width: usize) -> i16 {
-    let left = if at % width > 0 { plane[at - 1] } else { 0 };
+    let inside = !at.is_multiple_of(width);
+    let left = if inside { plane[at - 1] } else { 0 };
     if at < width {
         return left;
     }
     let above = plane[at - width];
-    let corner = if at % width > 0 { plane[at - width - 1] } else { 0 };
+    let corner = if inside { plane[at - width - 1] } else { 0 };
     let (low, high) = (left.min(above), left.max(above));
     if corner >= high {
         low
