@@ -116,7 +116,7 @@ pub fn any_surroundings(dice: &mut Dice) -> Surroundings {
     };
     let map = EnvironmentMap::new(Equirect::from_fn(128, light), Detail::COMPUTED);
     let turn = DMat3::from_axis_angle(dice.direction(), dice.range(0.0, 6.0));
-    Surroundings::new(Arc::new(map.unwrap()), turn, dice.range(0.1, 0.5))
+    Surroundings::new(Arc::new(map.expect("a sky that is not black")), turn, dice.range(0.1, 0.5))
 }
 
 /// Puts a lens before the pinhole of a draw list; says whether a picture can be taken through it.
