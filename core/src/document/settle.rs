@@ -155,7 +155,7 @@ fn read(empirical: &Empirical, files: &mut Files) -> Result<Value, String> {
 }
 
 #[cfg(test)]
-mod tests {
+pub(in crate::document) mod tests {
     use std::fs;
 
     use super::*;
@@ -164,6 +164,11 @@ mod tests {
     /// A folder with a config whose people's ages are a law, and files beside it; what loading it
     /// says.
     fn load(age: &str, files: &[(&str, &str)]) -> Result<Settled, Problems> {
+        load_people(&format!(r#""body": {{"age_years": {age}}}"#), files)
+    }
+
+    /// The same with fields of `people`.
+    pub fn load_people(fields: &str, files: &[(&str, &str)]) -> Result<Settled, Problems> {
         let dir = tempfile::tempdir().unwrap();
         for (name, text) in files {
             let path = dir.path().join(name);
@@ -171,9 +176,7 @@ mod tests {
             fs::write(path, text).unwrap();
         }
         let config = dir.path().join("config.json");
-        let text = format!(
-            r#"{{"version": 1, "assets": ["more"], "people": {{"body": {{"age_years": {age}}}}}}}"#
-        );
+        let text = format!(r#"{{"version": 1, "assets": ["more"], "people": {{{fields}}}}}"#);
         fs::write(&config, text).unwrap();
         read_all(file::load(&config).unwrap())
     }

@@ -121,23 +121,12 @@ mod tests {
     use std::fs;
 
     use super::*;
-    use crate::document::file::{self, MAX_BYTES, Problems};
-    use crate::document::settle::{Settled, read_all};
+    use crate::document::file::{MAX_BYTES, Problems};
+    use crate::document::settle::{Settled, tests::load_people};
 
     /// A folder with a config that has a cast, and files beside it; what loading it says.
     fn load(cast: &str, files: &[(&str, &str)]) -> Result<Settled, Problems> {
-        let dir = tempfile::tempdir().unwrap();
-        for (name, text) in files {
-            let path = dir.path().join(name);
-            fs::create_dir_all(path.parent().unwrap()).unwrap();
-            fs::write(path, text).unwrap();
-        }
-        let config = dir.path().join("config.json");
-        let text = format!(
-            r#"{{"version": 1, "assets": ["more"], "people": {{"identities": 4, "cast": {cast}}}}}"#
-        );
-        fs::write(&config, text).unwrap();
-        read_all(file::load(&config).unwrap())
+        load_people(&format!(r#""identities": 4, "cast": {cast}"#), files)
     }
 
     #[test]

@@ -21,6 +21,8 @@ const CLOUD: f64 = 3.2;
 const HAZE: f64 = 0.12;
 /// Thickness over which clouds begin.
 const CLOUD_EDGE: f64 = 0.3;
+/// What is added to it, over the height at which clouds are seen.
+const CLOUD_BLUR: f64 = 0.06;
 /// Side of the field of clouds, and what of it lies within 45 degrees of the zenith.
 const CLOUD_SIDE: f64 = 512.0;
 const CLOUD_SCALE: f64 = 110.0;
@@ -97,8 +99,10 @@ impl Sky {
         let thickness = f64::from(CLOUDS.sample(x, y));
         let cover = self.cloud_cover.min(1.0);
         let above = thickness - (1.0 - cover);
-        // Soft edges, half of them inside.
+        // Soft edges, half of them inside, and softer towards the horizon, where clouds are smaller
+        // than pixels.
         let edge = CLOUD_EDGE.min(2.0 * cover).min(2.0 * (1.0 - cover)).max(1e-6);
+        let edge = edge + CLOUD_BLUR / height;
         let share = above / edge + 0.5;
         // Thick parts are darker below; those near the sun glow.
         let glow = 0.35 * d.dot(self.direction_to_sun).max(0.0).powi(8);
