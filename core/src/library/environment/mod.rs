@@ -111,3 +111,83 @@ impl Environments {
         TextureError::UnknownEnvironment { id: id.to_owned(), nearest }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use glam::Vec3;
+    use image::codecs::hdr::HdrEncoder;
+    use image::{ImageBuffer, Rgb, Rgb32FImage};
+
+    use super::*;
+
+    /// Bright above, dark below, in the format of an ending.
+    fn sky(width: u32, height: u32, ending: &str) -> Vec<u8> {
+        let light = |y: u32| if y < height / 2 { [1.5, 3.0, 6.0] } else { [0.25; 3] };
+        let picture: Rgb32FImage = ImageBuffer::from_fn(width, height, |_, y| Rgb(light(y)));
+        let mut bytes = std::io::Cursor::new(Vec::new());
+        if ending == "hdr" {
+            let pixels: Vec<Rgb<f32>> = picture.pixels().copied().collect();
+            HdrEncoder::new(&mut bytes).encode(&pixels, width as usize, height as usize).unwrap();
+        } else {
+            picture.write_to(&mut bytes, image::ImageFormat::OpenExr).unwrap();
+        }
+        bytes.into_inner()
+    }
+
+    /// What becomes of a file.
+    fn got(name: &str, bytes: &[u8]) -> Result<Arc<EnvironmentMap>, TextureError> {
+        let dir = tempfile::tempdir().unwrap();
+        std::fs::write(dir.path().join(name), bytes).unwrap();
+        let environments = Environments::new(&[dir.path().to_owned()]).unwrap();
+        let id = environments.file_ids().next().cloned().unwrap();
+        let map = environments.get(&id)?;
+        assert_eq!(environments.content_hash(&id), Some(content_hash(bytes)));
+        Ok(map)
+    }
+
+    #[test]
+    fn files_of_both_formats_become_the_same_surroundings() {
+        for name in ["a.hdr", "b.EXR"] {
+            let ending = if name.ends_with("hdr") { "hdr" } else { "exr" };
+            let map = got(name, &sky(64, 32, ending)).unwrap();
+            let (above, below) = (map.light(Vec3::Y, 0), map.light(Vec3::NEG_Y, 0));
+            assert!(
+                (above / below - Vec3::new(6.0, 12.0, 24.0)).abs().max_element() < 0.3,
+                "{name}"
+            );
+            // Half of it is the mean of both luminances, 1.
+            let luminance = |v: Vec3| v.dot(Vec3::new(0.2126, 0.7152, 0.0722));
+            let mean = 0.5 * (luminance(above) + luminance(below));
+            assert!((mean - 1.0).abs() < 0.02, "{name}: {mean}");
+        }
+    }
+
+    #[test]
+    fn files_that_are_no_surroundings_are_refused_with_a_reason() {
+        let mut cut = sky(64, 32, "exr");
+        cut.truncate(cut.len() / 2);
+        let endless: Rgb32FImage = ImageBuffer::from_pixel(64, 32, Rgb([f32::INFINITY; 3]));
+        let mut bright = std::io::Cursor::new(Vec::new());
+        endless.write_to(&mut bright, image::ImageFormat::OpenExr).unwrap();
+        for (name, bytes, reason) in [
+            ("empty.hdr", Vec::new(), "is empty"),
+            ("text.exr", b"hello".to_vec(), "neither Radiance"),
+            ("square.hdr", sky(64, 64, "hdr"), "twice as wide as high"),
+            ("cut.exr", cut, "not a usable picture"),
+            ("bright.exr", bright.into_inner(), "must be finite"),
+        ] {
+            let error = got(name, &bytes).unwrap_err().to_string();
+            assert!(error.contains(name) && error.contains(reason), "{error}");
+        }
+    }
+
+    #[test]
+    fn everything_listed_can_be_had_and_other_ids_are_told_the_nearest() {
+        let environments = Environments::new(&[]).unwrap();
+        assert!(environments.ids().len() >= 12);
+        let map = environments.get(&environments.ids()[3]).unwrap();
+        assert_eq!(map.levels[0].log2_width, 11);
+        let error = environments.get("hdri/parc").unwrap_err().to_string();
+        assert!(error.contains("did you mean \"hdri/park\""), "{error}");
+    }
+}
