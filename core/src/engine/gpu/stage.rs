@@ -405,6 +405,7 @@ impl Stage {
                 file!("shared/surface.wgsl"),
                 file!("shared/material.wgsl"),
                 file!("shared/sunlight.wgsl"),
+                file!("shared/environment.wgsl"),
                 file!("shared/light.wgsl"),
                 file!("shared/develop.wgsl"),
                 file!("shared/display.wgsl"),

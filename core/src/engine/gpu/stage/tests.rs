@@ -103,6 +103,13 @@ fn shared_structs_are_laid_out_alike() {
             contrast,
             grain,
             tone_curve,
+            has_environment,
+            environment_unit,
+            pad5,
+            pad6,
+            environment_from_view,
+            environment_levels,
+            environment_irradiance,
         }),
         layout!(Target {
             rows,
