@@ -28,6 +28,7 @@ fn base() -> Value {
     let hsv = json!({"hsv": unit});
     for (path, law) in [
         ("people.identities", Value::Null),
+        ("lights.environment.image.source", json!("sky")),
         ("people.body.stature_m", json!({"uniform": [1.5, 1.9]})),
         ("people.body.bmi_kg_m2", json!({"uniform": [20, 30]})),
         ("people.look.skin", unit.clone()),

@@ -5,6 +5,7 @@ use figurant_core::document::{
     Auto, Brown, Choice, Distortion, Document, Fisheye, OutfitRow, Param, Problem, Season, file,
     presets,
 };
+use figurant_core::library::environment::Environments;
 use figurant_core::library::pose::Poses;
 use figurant_core::library::textures::{TextureGroup, TextureLibrary};
 use figurant_core::sampling::{
@@ -43,7 +44,7 @@ fn catalogue() -> Catalogue {
             .ids(TextureGroup::Procedural)
             .to_vec(),
         cloth_patterns: names("pattern", 5),
-        environments: names("hdri", 3),
+        environments: Environments::new(&[]).expect("no folders").ids().to_vec(),
     }
 }
 

@@ -188,7 +188,7 @@ fn a_lens_that_folds_fails_its_frame_and_no_other() {
     let lens = json!({"model": "brown", "k1": {"choice": [[-0.1, 1], [-2, 1]]}});
     let mut studio = studio(lens, 40.0);
     let (mut good, mut bad) = (0, 0);
-    for frame in 0..12 {
+    for frame in 0..24 {
         match studio.make(frame) {
             Ok(_) => good += 1,
             Err(error) => {

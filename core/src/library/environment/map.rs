@@ -180,6 +180,7 @@ pub fn unpacked(texel: u32) -> Vec3 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::library::environment::equirect::direction_at;
 
     #[test]
     fn texels_keep_light_to_a_five_hundredth_of_the_brightest_channel() {
@@ -202,10 +203,7 @@ mod tests {
             EnvironmentMap::new(Equirect::from_fn(64, |_| Vec3::splat(7.0)), Detail::COMPUTED);
         let map = map.unwrap();
         for i in 0..100 {
-            let d = super::super::equirect::direction_at(
-                f64::from(i) / 100.0,
-                libm::fmod(f64::from(i) * 0.618, 1.0),
-            );
+            let d = direction_at(f64::from(i) / 100.0, libm::fmod(f64::from(i) * 0.618, 1.0));
             for level in 0..LEVELS {
                 assert_eq!(map.light(d.as_vec3(), level), Vec3::ONE, "level {level}");
             }

@@ -199,6 +199,7 @@ fn distribution([a, b, c, d, e]: &[f64; 5], cos_theta: f64, cos_gamma: f64) -> f
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::library::environment::equirect::direction_at;
 
     fn sky(elevation_deg: f64) -> Sky {
         let e = elevation_deg.to_radians();
@@ -243,8 +244,7 @@ mod tests {
             let mut hidden = 0.0;
             for i in 0..4_000 {
                 let v = (f64::from(i) + 0.5) / 8_000.0;
-                let d =
-                    super::super::equirect::direction_at(libm::fmod(f64::from(i) * 0.618, 1.0), v);
+                let d = direction_at(libm::fmod(f64::from(i) * 0.618, 1.0), v);
                 hidden += sky.cloud(d).0 / 4_000.0;
             }
             // A ninth of the places lies in the haze.
