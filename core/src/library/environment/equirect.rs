@@ -70,12 +70,14 @@ impl Equirect {
     #[must_use]
     pub fn from_fn(width: usize, mut light: impl FnMut(DVec3) -> Vec3) -> Self {
         let height = width / 2;
+        let share = |i: usize, n: usize| (i as f64 + 0.5) / n as f64;
+        // On the horizon; rows differ from it by two factors.
+        let level: Vec<DVec3> = (0..width).map(|x| direction_at(share(x, width), 0.5)).collect();
         let mut pixels = Vec::with_capacity(width * height);
         for y in 0..height {
-            let v = (y as f64 + 0.5) / height as f64;
-            pixels.extend(
-                (0..width).map(|x| light(direction_at((x as f64 + 0.5) / width as f64, v))),
-            );
+            let polar = std::f64::consts::PI * share(y, height);
+            let (around, up) = (libm::sin(polar), libm::cos(polar));
+            pixels.extend(level.iter().map(|d| light(DVec3::new(d.x * around, up, d.z * around))));
         }
         Self { width, pixels }
     }

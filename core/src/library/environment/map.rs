@@ -39,8 +39,8 @@ pub struct Detail {
 impl Detail {
     /// For pictures, which are prepared once: 2048 columns.
     pub const PICTURE: Self = Self { log2_widths: [11, 7, 6, 6, 5, 5], samples: 64 };
-    /// For what is computed for each frame: 512 columns.
-    pub const COMPUTED: Self = Self { log2_widths: [9, 6, 5, 5, 4, 4], samples: 32 };
+    /// For what is computed for each frame: 1024 columns.
+    pub const COMPUTED: Self = Self { log2_widths: [10, 6, 5, 5, 4, 4], samples: 32 };
 }
 
 /// Light from all directions; its mean luminance is 1.

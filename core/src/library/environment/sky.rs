@@ -69,7 +69,7 @@ impl Sky {
         let air = Air::new(self);
         // The air is smooth; only clouds need the full size.
         let coarse =
-            Equirect::from_fn((width / 8).max(16), |d| air.light(d).as_vec3()).resized(width);
+            Equirect::from_fn((width / 16).max(16), |d| air.light(d).as_vec3()).resized(width);
         let zenith = air.light(DVec3::Y);
         let horizon = air.light(DVec3::Z) + air.light(DVec3::NEG_Z);
         let ground = DVec3::from_array(self.ground) * (zenith + horizon * 0.5) * 0.5;
