@@ -16,7 +16,7 @@ use crate::scene::Glasses;
 /// radius of the frame's tube.
 const fn form(kind: Glasses) -> (f32, f32, f32, f32) {
     match kind {
-        Glasses::Sunglasses => (0.0280, 0.0225, 2.8, 0.0019),
+        Glasses::Sunglasses => (0.0268, 0.0205, 2.9, 0.0019),
         Glasses::Thick => (0.0262, 0.0200, 3.4, 0.0021),
         Glasses::Thin | Glasses::None => (0.0250, 0.0205, 2.4, 0.0010),
     }
@@ -27,9 +27,10 @@ pub(super) fn add(mesh: &mut Mesh, head: &Head, kind: Glasses, eyes: &[Vec3]) ->
     let start = mesh.triangles.len() as u32;
     let fit = Fit::new(head, kind, eyes);
     let sides = [6, 5, 4, 3, 3][head.lod];
+    let around = [28, 18, 12, 8, 8][head.lod];
     let skin = head.on_head();
     for side in [1.0, -1.0] {
-        let rim = fit.rim(side, [28, 18, 12, 8, 8][head.lod]);
+        let rim = fit.rim(side, around);
         tube(mesh, &rim, sides, |_| fit.tube_m, &|_| skin);
         tube(mesh, &fit.temple(side), sides, |_| 1.1 * fit.tube_m, &|_| skin);
     }
@@ -37,7 +38,8 @@ pub(super) fn add(mesh: &mut Mesh, head: &Head, kind: Glasses, eyes: &[Vec3]) ->
     let frame = start..mesh.triangles.len() as u32;
     if kind == Glasses::Sunglasses {
         for side in [1.0, -1.0] {
-            fit.lens(mesh, side, [20, 14, 10, 6, 6][head.lod]);
+            // As many corners as the rim has, which thereby covers the edge.
+            fit.lens(mesh, side, around);
         }
     }
     [frame.clone(), frame.end..mesh.triangles.len() as u32]
@@ -132,7 +134,7 @@ impl<'a> Fit<'a> {
         let center = push(mesh, middle, normal(middle), [0.5; 2], skin);
         let ring: Vec<u32> = (0..=count)
             .map(|i| {
-                let p = self.at(side, i as f32 / count as f32, 0.98);
+                let p = self.at(side, i as f32 / count as f32, 1.0);
                 push(mesh, p, normal(p), [0.0; 2], skin)
             })
             .collect();

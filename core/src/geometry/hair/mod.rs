@@ -37,6 +37,9 @@ use crate::scene::{HairStyle, HeadwearKind, Person};
 
 /// Locks by level of detail: share of the finest count, width, and share of the points.
 const LEVELS: [(f32, f32, f32); 3] = [(0.6, 1.25, 0.85), (0.22, 1.9, 0.6), (0.1, 2.6, 0.5)];
+/// At the finest level a lock of so many points or more is drawn as so many strands.
+const STRANDED_FROM: usize = 4;
+const STRANDS: usize = 3;
 /// Roots start a little under the skin.
 const SUNK_M: f32 = 0.0014;
 
@@ -352,7 +355,11 @@ impl Grower<'_> {
                 u: dice.unit() * 4.0,
                 tuft: locks.tuft,
             };
-            ribbon.add(mesh, &path, &skin);
+            if self.head.lod == 0 && points >= STRANDED_FROM {
+                strands(mesh, &ribbon, &path, &mut dice, &skin);
+            } else {
+                ribbon.add(mesh, &path, &skin);
+            }
         }
     }
 
@@ -372,7 +379,10 @@ impl Grower<'_> {
             | HairStyle::SideParting
             | HairStyle::Ponytail
             | HairStyle::Bun
-            | HairStyle::Braids => 1.0 + 0.9 * (1.0 - step(0.0, 0.03, root.depth)),
+            | HairStyle::Braids
+            | HairStyle::Bob
+            | HairStyle::LongStraight
+            | HairStyle::LongWavy => 1.0 + 0.9 * (1.0 - step(0.0, 0.03, root.depth)),
             _ => 1.0,
         }
     }
@@ -461,6 +471,32 @@ pub(super) fn add_grid(
                 mesh.triangles.push(Triangle::new([a, c, b]));
             }
         }
+    }
+}
+
+/// Adds a lock as a few strands side by side that part towards their ends, each of its own length:
+/// from near by a broad ribbon looks like a plank.
+fn strands(
+    mesh: &mut Mesh,
+    lock: &Ribbon,
+    path: &Path,
+    dice: &mut Dice,
+    skin: &dyn Fn(Vec3) -> SkinVertex,
+) {
+    for k in 0..STRANDS {
+        let across = (k as f32 + 0.5) / STRANDS as f32 - 0.5;
+        let beside_m = lock.width_m * (0.85 * across + dice.range(-0.12, 0.12));
+        let off_m = lock.width_m * dice.range(-0.05, 0.25);
+        let share = dice.range(0.86, 1.0);
+        let strand = Ribbon {
+            width_m: lock.width_m * 1.35 / STRANDS as f32 * dice.range(0.7, 1.2),
+            root: lock.root.min(0.5),
+            tilt: lock.tilt + dice.range(-0.3, 0.3),
+            u: lock.u + across * lock.width_m * UV_PER_M[0],
+            tuft: false,
+            ..*lock
+        };
+        strand.add(mesh, &path.beside(beside_m, off_m, share), skin);
     }
 }
 

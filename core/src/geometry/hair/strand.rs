@@ -59,10 +59,16 @@ impl Path {
         self.points.windows(2).map(|w| (w[1] - w[0]).length()).sum()
     }
 
-    /// The same line by so many points at equal distances.
+    /// The same line by so many points, closer together where it bends: straight pieces between few
+    /// points would run through the head.
     pub fn resampled(&self, count: usize) -> Self {
+        self.resampled_within(1.0, count)
+    }
+
+    /// A share of it from its beginning by so many points.
+    fn resampled_within(&self, share: f32, count: usize) -> Self {
         let mut out = Self::with_room(count);
-        let total = self.length();
+        let total = share * (0..self.points.len() - 1).map(|i| self.piece(i)).sum::<f32>();
         let (mut i, mut before) = (0, 0.0);
         for k in 0..count {
             let wanted = total * k as f32 / (count - 1) as f32;
@@ -80,9 +86,27 @@ impl Path {
         out
     }
 
+    /// A line of as many points that leaves this one more and more, to a side and outwards (metres at
+    /// the end), and is so much of its length.
+    pub fn beside(&self, beside_m: f32, off_m: f32, share: f32) -> Self {
+        let last = (self.points.len() - 1).max(1) as f32;
+        let mut out = self.resampled_within(share, self.points.len());
+        for i in 0..out.points.len() {
+            let t = i as f32 / last;
+            let side = out.along(i).cross(out.outward[i]).normalize_or(Vec3::X);
+            // Side by side near the roots already, apart at the ends.
+            let away = step(0.0, 0.3, t) * (0.7 + 0.6 * t);
+            out.points[i] += side * (beside_m * away) + out.outward[i] * (off_m * t);
+        }
+        out
+    }
+
+    /// Length of a piece and how much its ends bend, each radian as so many metres.
     fn piece(&self, i: usize) -> f32 {
+        const BEND_M: f32 = 0.05;
         let j = (i + 1).min(self.points.len() - 1);
-        (self.points[j] - self.points[i]).length()
+        let bend = (self.along(j) - self.along(i)).length();
+        (self.points[j] - self.points[i]).length() + BEND_M * bend
     }
 
     /// Unit direction along the line at a point.

@@ -253,7 +253,7 @@ pub(super) fn form(style: HairStyle) -> Option<Form> {
             ..none
         },
         HairStyle::Bob => Form {
-            cap: Cap { thick_m: 0.018, taper_m: 0.040, side: 0.8, lump: (0.06, 0.03), ragged: 0.5 },
+            cap: Cap { thick_m: 0.010, taper_m: 0.030, side: 0.8, lump: (0.06, 0.03), ragged: 0.8 },
             locks: Some(Locks {
                 count: 440,
                 length: Length::Down(0.655, 0.012),
@@ -261,7 +261,7 @@ pub(super) fn form(style: HairStyle) -> Option<Form> {
                 clear_m: (0.009, 0.018),
                 layer_m: 0.008,
                 clings: 0.35,
-                points: 8,
+                points: 10,
                 flow: Flow::Fall,
                 ..LOOSE
             }),
@@ -271,7 +271,7 @@ pub(super) fn form(style: HairStyle) -> Option<Form> {
         HairStyle::LongStraight | HairStyle::LongWavy => {
             let wavy = style == HairStyle::LongWavy;
             Form {
-                cap: Cap { thick_m: 0.015, taper_m: 0.040, ..SMOOTH },
+                cap: Cap { thick_m: 0.009, taper_m: 0.030, ragged: 1.0, ..SMOOTH },
                 locks: Some(Locks {
                     count: if wavy { 370 } else { 480 },
                     length: Length::Down(0.46, 0.05),
@@ -280,7 +280,7 @@ pub(super) fn form(style: HairStyle) -> Option<Form> {
                     layer_m: 0.006,
                     clings: 0.3,
                     curl: wavy.then_some((0.007, 0.085)),
-                    points: if wavy { 15 } else { 9 },
+                    points: if wavy { 17 } else { 14 },
                     tuft: false,
                     flow: Flow::Fall,
                     ..LOOSE

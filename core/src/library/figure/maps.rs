@@ -279,8 +279,9 @@ fn mean(data: &FigureData, group: &Group, round: [(usize, f32); 3]) -> [f32; 3] 
     at
 }
 
-/// Calls `f` once with every texel that a group's triangles cover and the vertices round it with
-/// their shares; of the triangles that begin with a wanted render vertex.
+/// Calls `f` once with every texel that a group's triangles cover, or that lies beside such a texel
+/// within [`BESIDE`] others, and the vertices round it with their shares; of the triangles that
+/// begin with a wanted render vertex.
 fn raster(
     group: &Group,
     uvs: &[f32],
@@ -288,42 +289,84 @@ fn raster(
     wanted: impl Fn(usize) -> bool,
     mut f: impl FnMut(usize, [(usize, f32); 3]),
 ) {
-    let mut done = vec![false; side * side];
-    for t in group.lods[0].triangles.chunks_exact(3) {
-        let r = [t[0], t[1], t[2]].map(usize::from);
-        if !wanted(r[0]) {
+    // Triangle of each texel, from 1; 0 for none.
+    let mut owner = vec![0u32; side * side];
+    let triangles = group.lods[0].triangles.as_chunks::<3>().0;
+    let corners = |t: &[u16; 3]| t.map(|r| usize::from(group.render[usize::from(r)]));
+    let shares_of = |t: &[u16; 3]| {
+        let [a, b, c] = t.map(|r| [0, 1].map(|k| uvs[2 * usize::from(r) + k] * side as f32));
+        let area = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
+        let shares = [(b, c), (c, a), (a, b)].map(|(p, q)| Share::new(p, q, area));
+        (area.abs() >= 1e-9).then_some((shares, [a, b, c]))
+    };
+    for (number, t) in (1..).zip(triangles) {
+        if !wanted(usize::from(t[0])) {
             continue;
         }
-        let v = r.map(|r| usize::from(group.render[r]));
-        let [a, b, c] = r.map(|r| [0, 1].map(|k| uvs[2 * r + k] * side as f32));
-        let cross = |o: [f32; 2], p: [f32; 2], q: [f32; 2]| {
-            (p[0] - o[0]) * (q[1] - o[1]) - (p[1] - o[1]) * (q[0] - o[0])
-        };
-        let area = cross(a, b, c);
-        if area.abs() < 1e-9 {
-            continue;
-        }
+        let Some((shares, [a, b, c])) = shares_of(t) else { continue };
+        let v = corners(t);
         // A margin of about a texel round each triangle, which whoever comes later leaves alone.
         let range = |k: usize| {
             let low = a[k].min(b[k]).min(c[k]).floor() - 1.0;
             let high = a[k].max(b[k]).max(c[k]).ceil() + 1.0;
             low.max(0.0) as usize..(high.max(0.0) as usize).min(side)
         };
-        let shares = [(b, c), (c, a), (a, b)].map(|(p, q)| Share::new(p, q, area));
         let columns = range(0);
         for y in range(1) {
             let at_y = y as f32 + 0.5;
             for x in shares.iter().fold(columns.clone(), |span, share| share.span(at_y, span)) {
                 let w = shares.map(|share| share.at(x as f32 + 0.5, at_y));
                 let i = y * side + x;
-                if !done[i] && w.iter().all(|&w| w >= -MARGIN) {
-                    done[i] = true;
+                if owner[i] == 0 && w.iter().all(|&w| w >= -MARGIN) {
+                    owner[i] = number;
                     f(i, [(v[0], w[0]), (v[1], w[1]), (v[2], w[2])]);
                 }
             }
         }
     }
+    // Filters look beyond the borders of the layout, and find there what goes on inside.
+    for (i, number) in beside(&mut owner, side) {
+        let t = &triangles[number as usize - 1];
+        let Some((shares, _)) = shares_of(t) else { continue };
+        let at = [i % side, i / side].map(|k| k as f32 + 0.5);
+        let w = shares.map(|share| share.at(at[0], at[1]).clamp(-2.0, 3.0));
+        let (v, sum) = (corners(t), w.iter().sum::<f32>());
+        // Slivers say nothing of what is far from them.
+        if sum > 0.5 {
+            f(i, std::array::from_fn(|k| (v[k], w[k] / sum)));
+        }
+    }
 }
+
+/// Gives the texels beside those that have an owner the owner of a neighbour; which, and whose.
+fn beside(owner: &mut [u32], side: usize) -> Vec<(usize, u32)> {
+    let neighbours = |i: usize| {
+        let (x, y) = (i % side, i / side);
+        let left = (x > 0).then(|| i - 1);
+        let right = (x + 1 < side).then(|| i + 1);
+        let up = (y > 0).then(|| i - side);
+        let down = (y + 1 < side).then(|| i + side);
+        [left, right, up, down].into_iter().flatten()
+    };
+    let mut all = Vec::new();
+    let mut edge: Vec<usize> = (0..owner.len()).filter(|i| owner[*i] > 0).collect();
+    for _ in 0..BESIDE {
+        let first = all.len();
+        for i in edge {
+            for j in neighbours(i) {
+                if owner[j] == 0 {
+                    owner[j] = owner[i];
+                    all.push((j, owner[i]));
+                }
+            }
+        }
+        edge = all[first..].iter().map(|texel| texel.0).collect();
+    }
+    all
+}
+
+/// Texels beyond the borders of the layout.
+const BESIDE: usize = 4;
 
 /// How far outside a triangle its texels reach, as a share of its height.
 const MARGIN: f32 = 0.05;
