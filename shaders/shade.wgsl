@@ -15,6 +15,7 @@
 @group(0) @binding(8) var<uniform> sun_view: SunView;
 @group(0) @binding(9) var<storage, read> shadow_map: array<f32>;
 @group(0) @binding(10) var<storage, read_write> picture: array<u32>;
+@group(0) @binding(11) var<uniform> blockers: array<Blocker, MAX_BLOCKERS>;
 
 // Cosine of the angle between faces, in 1/127 squared, below which an edge counts as a crease
 // that must not be shaded as one: 37 degrees.
@@ -48,7 +49,9 @@ fn fragment(slot: u32, at: vec2<f32>) -> vec3<f32> {
     let draw = primitives[slot].draw;
     let point = surface_point(primitives[slot].corners, at, surfaces[draw].flags);
     let look = look_at(draw, point);
-    return developed(reflected(point, look, surfaces[draw].metallic, surfaces[draw].wrap), at);
+    let own = surfaces[draw].own_blockers;
+    let light = reflected(point, look, surfaces[draw].metallic, surfaces[draw].wrap, own);
+    return developed(light, at);
 }
 
 // Display light of a pixel whose samples start at `first`.
@@ -94,12 +97,23 @@ fn pixel_color(first: u32, corner: vec2<f32>) -> vec3<f32> {
 }
 
 @compute @workgroup_size(8, 8)
-fn main(@builtin(global_invocation_id) id: vec3<u32>) {
-    if id.x >= raster_target.width || id.y >= raster_target.band_height {
-        return;
-    }
+fn main(
+    @builtin(global_invocation_id) id: vec3<u32>,
+    @builtin(local_invocation_index) index: u32,
+) {
+    let inside = id.x < raster_target.width && id.y < raster_target.band_height;
     let pixel = id.y * raster_target.width + id.x;
     let corner = vec2<f32>(f32(id.x), f32(id.y + raster_target.first_y));
+    if frame.blocker_count > 0u {
+        var ray = vec2<f32>(0.0);
+        if inside {
+            ray = ray_through(corner + 0.5).xy;
+        }
+        find_blockers(index, inside, pixel * SAMPLES, ray);
+    }
+    if !inside {
+        return;
+    }
     let color = pixel_color(pixel * SAMPLES, corner);
     picture[pixel] = encode(color, vec2<u32>(id.x, id.y + raster_target.first_y));
 }

@@ -101,6 +101,7 @@ impl FrameMaker for Painter {
                         sky_lux: [1.0; 3],
                         ground_lux: [1.0; 3],
                         background_nits: [0.0; 3],
+                        ambient_occlusion: false,
                         image: None,
                     },
                 },

@@ -8,7 +8,12 @@ use figurant_core::scene::{Role, Scene};
 use serde_json::{Value, json};
 
 fn catalogue() -> Catalogue {
-    let activity = |id: &str| Activity { id: id.to_owned(), activity: "moving".to_owned() };
+    let activity = |id: &str| Activity {
+        id: id.to_owned(),
+        activity: "moving".to_owned(),
+        seated: true,
+        unsuited: Vec::new(),
+    };
     Catalogue {
         face_targets: (0..60).map(|i| format!("nose-scale-{i}")).collect(),
         clips: ["walk", "run"].map(activity).to_vec(),
@@ -48,6 +53,7 @@ fn base() -> Value {
         ("people.wardrobe.shoes.sock_color", unit),
         ("people.pose.blend.share", share.clone()),
         ("people.pose.variation", share),
+        ("people.seats.hue_offset_deg", json!({"uniform": [0, 90]})),
         ("background.floor.enabled", json!(true)),
         ("lights.sun.temperature_k", json!({"uniform": [2500, 9000]})),
         ("lights.moving.temperature_k", json!({"uniform": [2500, 9000]})),

@@ -51,8 +51,9 @@ struct Frame {
     // A picture of the surroundings: whether there is one, exposed light of its 1.
     has_environment: u32,
     environment_unit: f32,
+    // Spheres in the way of surrounding light.
+    blocker_count: u32,
     pad5: u32,
-    pad6: u32,
     // Rows of the rotation into its axes.
     environment_from_view: array<vec4<f32>, 3>,
     // First word among the texels and log2 of the width of each level, two levels in one.
@@ -209,8 +210,14 @@ struct Surface {
     map_info: vec4<u32>,
     object: u32,
     pad0: u32,
-    pad1: u32,
-    pad2: u32,
+    // First of the object's own spheres, and the one after the last.
+    own_blockers: vec2<u32>,
+}
+
+// A sphere in the way of surrounding light, view space.
+struct Blocker {
+    center: vec3<f32>,
+    radius_m: f32,
 }
 
 // A point light, scaled by the exposure.
@@ -253,5 +260,6 @@ const LARGE_ROOM: u32 = 4096u;
 const HEADER: u32 = 20u;
 // Point lights that there is room for.
 const MAX_LAMPS: u32 = 512u;
+const MAX_BLOCKERS: u32 = 3072u;
 
 @group(0) @binding(0) var<uniform> frame: Frame;

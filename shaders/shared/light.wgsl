@@ -128,9 +128,18 @@ fn lamp(r: Reflector, light: Light) -> vec3<f32> {
 }
 
 // Light that a fragment sends to the camera, times the exposure.
-fn reflected(point: SurfacePoint, look: Look, metallic: f32, wrap: f32) -> vec3<f32> {
+fn reflected(
+    point: SurfacePoint,
+    look: Look,
+    metallic: f32,
+    wrap: f32,
+    own_blockers: vec2<u32>,
+) -> vec3<f32> {
     let r = reflector(point.position, look, metallic, wrap);
     var sum = surrounding(r, look.roughness);
+    if frame.blocker_count > 0u {
+        sum *= unblocked(r.position, r.normal, own_blockers);
+    }
     if frame.has_sun != 0u {
         let cosine = dot(r.normal, frame.to_sun);
         if cosine > -wrap {

@@ -1,13 +1,13 @@
 //! Light, textures and shadows against the oracle and closed forms.
 
 use figurant_core::draw::DrawList;
-use figurant_core::draw::abi::{Material, PointLight, Sun, Surroundings};
+use figurant_core::draw::abi::{Blocker, Material, PointLight, Sun, Surroundings};
 use figurant_core::library::environment::EnvironmentMap;
 use figurant_core::library::environment::equirect::Equirect;
 use figurant_core::library::environment::map::Detail;
 use figurant_core::library::texture::{Encoding, Texture, color_from_srgb8};
 use figurant_core::plan::Output;
-use figurant_tests::drawlists::{self, add, any_surroundings, empty, mixed, view};
+use figurant_tests::drawlists::{self, add, any_blockers, any_surroundings, empty, mixed, view};
 use figurant_tests::meshes::{self, Dice};
 use figurant_tests::oracle::{Oracle, display, nits, radiance};
 use glam::{DAffine3, DMat3, DQuat, DVec3};
@@ -40,6 +40,7 @@ fn shading_agrees_with_the_oracle() {
         list.lights.sky_lux = [0.8, 0.6, 0.4];
         list.lights.ground_lux = [0.1, 0.2, 0.3];
         list.lights.surroundings = (seed % 2 == 1).then(|| any_surroundings(&mut dice));
+        any_blockers(&mut dice, &mut list);
         list.materials.iter_mut().for_each(|m| m.wrap = if dice.unit() < 0.3 { 0.3 } else { 0.0 });
         let frame = render(&list, &[Output::Rgb]);
         let oracle = Oracle::new(&list);
@@ -104,6 +105,53 @@ fn a_white_wall_sends_back_what_the_formula_says() {
     // Beyond its range a light does nothing.
     list.lights.points[0].range_m = 4.9;
     assert_eq!(pixel(&render(&list, &[Output::Rgb]), 32, 32), [0; 3]);
+}
+
+/// Under a uniform sky: by adding up the cosines of the directions that do not meet the sphere.
+#[test]
+fn a_sphere_over_a_wall_takes_the_light_that_it_hides() {
+    let (radius, distance) = (0.3, 4.0);
+    for height in [0.3, 0.36, 0.5] {
+        let mut list = empty(view(129, 129, 129.0), 4);
+        let wall = facing_square(20.0, DVec3::new(0.0, 0.0, -distance));
+        add(&mut list, meshes::square(), wall, plain([1.0; 3]));
+        list.lights.sky_lux = [2.0; 3];
+        list.lights.ground_lux = [2.0; 3];
+        let open = render(&list, &[Output::Rgb]);
+        let center = DVec3::new(0.0, 0.0, height - distance);
+        list.blockers =
+            vec![Blocker { center: center.as_vec3().to_array(), radius_m: radius as f32 }];
+        let frame = render(&list, &[Output::Rgb]);
+        for step in 0..10 {
+            let x = 64 + step as usize;
+            let foot = DVec3::new(f64::from(step) / 129.0 * distance, 0.0, -distance);
+            let to_center = center - foot;
+            let cosine = |d: DVec3| {
+                let along = d.dot(to_center);
+                let off = to_center.length_squared() - along * along;
+                if along > 0.0 && off < radius * radius { d.z } else { 0.0 }
+            };
+            let expected = 1.0 - over_hemisphere(cosine) / std::f64::consts::PI;
+            let light = |frame| nits(f64::from(pixel(frame, x, 64)[1]), 1.0);
+            let got = light(&frame) / light(&open);
+            assert!((got - expected).abs() < 0.03, "{height} {step}: {got} is not {expected}");
+        }
+    }
+}
+
+/// Integral over the directions with positive z.
+fn over_hemisphere(f: impl Fn(DVec3) -> f64) -> f64 {
+    const N: usize = 400;
+    let cell = |i: usize| {
+        let z = (i as f64 + 0.5) / N as f64;
+        let round = (0..2 * N).map(|k| {
+            let turn = std::f64::consts::TAU * (k as f64 + 0.5) / (2 * N) as f64;
+            let flat = (1.0 - z * z).sqrt();
+            f(DVec3::new(flat * turn.cos(), flat * turn.sin(), z))
+        });
+        round.sum::<f64>()
+    };
+    (0..N).map(cell).sum::<f64>() * std::f64::consts::TAU / (2 * N * N) as f64
 }
 
 #[test]

@@ -7,7 +7,7 @@ use figurant_core::draw::abi::{PointLight, Sun};
 use figurant_core::label;
 use figurant_core::library::texture::{Encoding, Texture, color_from_srgb8};
 use figurant_core::plan::{Output, Outputs};
-use figurant_tests::drawlists::{any_grade, any_lens, any_surroundings, mixed};
+use figurant_tests::drawlists::{any_blockers, any_grade, any_lens, any_surroundings, mixed};
 use figurant_tests::meshes::Dice;
 use std::sync::Arc;
 
@@ -22,6 +22,9 @@ fn lit(seed: u64, samples: u32) -> DrawList {
     let mut dice = Dice::new(seed + 7);
     if seed % 2 == 1 {
         list.grade = any_grade(&mut dice);
+    }
+    if seed % 3 != 1 {
+        any_blockers(&mut dice, &mut list);
     }
     if seed % 3 == 1 {
         list.lights.surroundings = Some(any_surroundings(&mut dice));

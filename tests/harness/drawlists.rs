@@ -5,7 +5,7 @@ use std::sync::Arc;
 use figurant_core::base::lens::{Lens, LensError, LensGrid};
 use figurant_core::draw::DrawList;
 use figurant_core::draw::abi::{
-    ColorGrade, Draw, DrawObject, Grade, Lights, Material, Surroundings, ToneCurve, View,
+    Blocker, ColorGrade, Draw, DrawObject, Grade, Lights, Material, Surroundings, ToneCurve, View,
 };
 use figurant_core::library::environment::EnvironmentMap;
 use figurant_core::library::environment::equirect::Equirect;
@@ -72,6 +72,7 @@ pub fn add(
         in_view: true,
         casts_shadow: true,
         smooth: true,
+        blockers: 0..0,
     });
     object
 }
@@ -117,6 +118,21 @@ pub fn any_surroundings(dice: &mut Dice) -> Surroundings {
     let map = EnvironmentMap::new(Equirect::from_fn(128, light), Detail::COMPUTED);
     let turn = DMat3::from_axis_angle(dice.direction(), dice.range(0.0, 6.0));
     Surroundings::new(Arc::new(map.expect("a sky that is not black")), turn, dice.range(0.1, 0.5))
+}
+
+/// Spheres in the way of surrounding light, the first ones those of the first object.
+pub fn any_blockers(dice: &mut Dice, list: &mut DrawList) {
+    list.blockers = (0..40)
+        .map(|_| {
+            let distance = dice.range(0.4, 9.0);
+            let offset = dice.vector() * DVec3::new(0.6, 0.6, 0.0) * distance;
+            Blocker {
+                center: (offset - DVec3::Z * distance).as_vec3().to_array(),
+                radius_m: dice.range(0.05, 0.6) as f32,
+            }
+        })
+        .collect();
+    list.objects[0].blockers = 0..12;
 }
 
 /// Puts a lens before the pinhole of a draw list; says whether a picture can be taken through it.

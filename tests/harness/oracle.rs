@@ -7,7 +7,7 @@
 
 use figurant_core::base::lens::Lens;
 use figurant_core::draw::DrawList;
-use figurant_core::draw::abi::{DrawObject, Material, Surroundings, View};
+use figurant_core::draw::abi::{Blocker, DrawObject, Material, Surroundings, View};
 use figurant_core::library::environment::map::LEVELS;
 use glam::{DMat3, DVec2, DVec3};
 
@@ -322,7 +322,7 @@ pub fn radiance(list: &DrawList, material: &Material, albedo: DVec3, hit: &Hit) 
         None => irradiance(mirrored) / std::f64::consts::PI,
     };
     let matt = diffuse * (DVec3::ONE - mirror - again) + again / std::f64::consts::PI;
-    let mut sum = mirror * seen + matt * irradiance(n);
+    let mut sum = (mirror * seen + matt * irradiance(n)) * unblocked(list, hit);
 
     let mut add = |to_light: DVec3, illuminance: DVec3| {
         let cosine = n.dot(to_light);
@@ -344,6 +344,20 @@ pub fn radiance(list: &DrawList, material: &Material, albedo: DVec3, hit: &Hit) 
         add(to_light / distance, point(light.color_cd) / (near * near) * window * window);
     }
     sum
+}
+
+/// Share of surrounding light that the draw list's spheres let through.
+fn unblocked(list: &DrawList, hit: &Hit) -> f64 {
+    let own = &list.objects[hit.object].blockers;
+    let passes = |(i, blocker): (u32, &Blocker)| {
+        let way = point(blocker.center) - hit.position;
+        let radii = way.length() / f64::from(blocker.radius_m);
+        let bias = if own.contains(&i) { 0.25 } else { 0.0 };
+        let faces = (hit.normal.dot(way.normalize()) - bias).max(0.0) / (1.0 - bias);
+        let ends = (1.0 - (radii / 4.0).powi(4)).max(0.0).powi(2);
+        1.0 - faces * (1.0 / (radii * radii)).min(1.0) * ends
+    };
+    (0..).zip(&list.blockers).map(passes).product()
 }
 
 /// Irradiance that a picture of all directions gives a surface, view space.

@@ -369,6 +369,7 @@ impl Sorted {
                 in_view: shown,
                 casts_shadow: false,
                 smooth: true,
+                blockers: 0..0,
             });
             if shown {
                 list.draws.push(Draw {

@@ -223,6 +223,9 @@ pub struct Environment {
     pub background_nits: Param,
     /// Multiplies it.
     pub background_color: Color,
+    /// Whether bodies keep this light off what is near them: the ground under the feet, a side under
+    /// an arm.
+    pub ambient_occlusion: bool,
     /// A picture of all directions, which stands in for sky, ground and background.
     pub image: EnvironmentImage,
 }
@@ -281,6 +284,7 @@ impl Default for Environment {
             ground_color: Color::srgb(1.0, 0.95, 0.9),
             background_nits: 400.0.into(),
             background_color: Color::srgb(0.6, 0.75, 1.0),
+            ambient_occlusion: false,
             image: EnvironmentImage::default(),
         }
     }

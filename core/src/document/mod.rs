@@ -45,7 +45,7 @@ pub use param::{
     Auto, AutoWord, Beta, Binomial, Chance, Choice, Distribution, Empirical, Flag, Given,
     Lognormal, Normal, Param, Triangular, Weighted,
 };
-pub use people::{Ancestry, Blend, Body, Look, Origin, People, Pose};
+pub use people::{Ancestry, Blend, Body, Look, Origin, People, Pose, Seats};
 pub use place::{
     Background, Floor, Grid, GridPlane, Ground, Materials, Occluders, Placement, PoissonDisk, Row,
     Wall,

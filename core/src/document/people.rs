@@ -6,8 +6,8 @@ use serde::{Deserialize, Serialize};
 use super::cast::Member;
 use super::face::Expression;
 use super::place::PoissonDisk;
-use super::{Auto, Choice, Color, Flag, Param, Placement, Rotation, Wardrobe};
-use crate::scene::{BeardStyle, Glasses, HairStyle, HandShape, HeadwearKind, Sex};
+use super::{Auto, Choice, Color, ColorLaw, Flag, Param, Placement, Rotation, Wardrobe};
+use crate::scene::{BeardStyle, Glasses, HairStyle, HandShape, HeadwearKind, Sex, Shape};
 
 /// Everybody in the picture.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -36,6 +36,8 @@ pub struct People {
     pub wardrobe: Wardrobe,
     /// Pose.
     pub pose: Pose,
+    /// What they sit on.
+    pub seats: Seats,
 }
 
 impl Default for People {
@@ -59,6 +61,7 @@ impl Default for People {
             look: Look::default(),
             wardrobe: Wardrobe::default(),
             pose: Pose::default(),
+            seats: Seats::default(),
         }
     }
 }
@@ -211,6 +214,10 @@ pub struct Pose {
     /// Id of a motion clip (`"walk"`) or of a pose (`"pose/sitting_chair"`); `"any_clip"`,
     /// `"any_pose"` or `"any"` for one of all.
     pub clip: Choice<String>,
+    /// Whether nobody takes a pose that the clothes are not made for, such as swimming in a coat: where
+    /// one is drawn, another one is drawn in its place. What the config leaves no choice of is taken
+    /// in any clothes.
+    pub suits_clothes: bool,
     /// Position in the clip: 0 its first frame .. 1 its last. Poses have none.
     pub phase: Param,
     /// Whether left and right are exchanged.
@@ -231,12 +238,46 @@ impl Default for Pose {
         Self {
             enabled: true,
             clip: Choice::Always("any_clip".to_owned()),
+            suits_clothes: true,
             phase: Param::uniform(0.0, 1.0),
             mirrored: Flag::with_probability(0.5),
             variation: Param::Constant(0.0),
             blend: Blend::default(),
             hands: Auto::default(),
             gaze_deg: [Param::Constant(0.0), Param::Constant(0.0)],
+        }
+    }
+}
+
+/// What whoever takes a sitting pose sits on: a block from the ground up to the seat, as wide and as
+/// deep as the body needs. It hides what is behind it and is no person's.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+pub struct Seats {
+    /// Where false, sitting people sit on nothing.
+    pub enabled: bool,
+    /// Form; its height and width are the body's.
+    pub shape: Choice<Shape>,
+    /// Texture id; `"any"` for one of all, `"none"` for plain.
+    pub texture: Choice<String>,
+    /// Multiplies the texture.
+    pub color: Color,
+    /// Rotation of the hue.
+    pub hue_offset_deg: Param,
+}
+
+impl Default for Seats {
+    fn default() -> Self {
+        Self {
+            enabled: true,
+            shape: Choice::of([(Shape::Cube, 2.0), (Shape::Cylinder, 1.0)]),
+            texture: Choice::Always("none".to_owned()),
+            color: Color::Other(ColorLaw::Hsv([
+                Param::uniform(15.0, 45.0),
+                Param::uniform(0.1, 0.6),
+                Param::uniform(0.2, 0.75),
+            ])),
+            hue_offset_deg: Param::Constant(0.0),
         }
     }
 }

@@ -15,7 +15,7 @@ use rules::{Check, Range};
 use super::{
     Ancestry, Auto, Background, Body, Camera, Document, Environment, Image, JointRotation, Labels,
     Lights, Look, MovingLight, Occluders, OutfitRow, Output, Param, People, Placement, PointLight,
-    Pose, Post, Problem, Quality, Rotation, Scheme, Sun, SunDirection, VERSION, Wardrobe,
+    Pose, Post, Problem, Quality, Rotation, Scheme, Seats, Sun, SunDirection, VERSION, Wardrobe,
 };
 
 /// People in a frame at most.
@@ -343,6 +343,14 @@ fn people(c: &mut Check, people: &People) {
     look(c, &people.look);
     wardrobe(c, &people.wardrobe);
     pose(c, &people.pose);
+    seats(c, &people.seats);
+}
+
+fn seats(c: &mut Check, seats: &Seats) {
+    c.choice("people.seats.shape", &seats.shape);
+    c.ids("people.seats.texture", &seats.texture);
+    c.color("people.seats.color", &seats.color);
+    c.param("people.seats.hue_offset_deg", &seats.hue_offset_deg, ANGLE);
 }
 
 fn pose(c: &mut Check, pose: &Pose) {

@@ -26,6 +26,8 @@ pub struct DrawList {
     pub textures: Vec<Arc<Texture>>,
     /// `view_from_model` of every joint of every skinned object: three rows of four.
     pub palette: Vec<[[f32; 4]; 3]>,
+    /// Spheres that keep surrounding light off what is near them, at most [`MAX_BLOCKERS`].
+    pub blockers: Vec<Blocker>,
     /// Light in view space.
     pub lights: Lights,
     /// Linear scale from nits to the sensor's 0..1.
@@ -79,6 +81,8 @@ pub struct DrawObject {
     pub casts_shadow: bool,
     /// Shading may be done once a pixel for the whole object where its triangles meet smoothly.
     pub smooth: bool,
+    /// Those of [`DrawList::blockers`] that are its own.
+    pub blockers: Range<u32>,
 }
 
 /// Triangles of one object with one material.
@@ -203,6 +207,38 @@ pub struct PointLight {
     pub color_cd: [f32; 3],
     /// Metres.
     pub radius_m: f32,
+}
+
+/// Spheres that there is room for.
+pub const MAX_BLOCKERS: usize = 3072;
+
+/// A sphere that keeps surrounding light off what is near it, view space.
+///
+/// Where a sphere of radius r at distance d lies wholly above a surface, it takes the share
+/// `max(n.w, 0) (r / d)^2` of the light that the surface gets from a uniform sky, n being the unit normal
+/// and w the unit vector to the sphere (the form factor of a sphere; Quilez, "Sphere ambient
+/// occlusion", 2006). So every sphere multiplies that light by
+///
+/// ```text
+/// 1 - max(n.w - b, 0) / (1 - b) min((r / d)^2, 1) max(1 - (d / (4 r))^4, 0)^2
+/// ```
+///
+/// with b = 0, and for the spheres of the surface's own object b = 0.25, which leaves out those that
+/// it merely bulges over. The last factor ends their reach at four radii.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[repr(C)]
+pub struct Blocker {
+    /// Metres.
+    pub center: [f32; 3],
+    /// Metres.
+    pub radius_m: f32,
+}
+
+impl Blocker {
+    /// How far its effect goes, radii.
+    pub const REACH: f32 = 4.0;
+    /// See above: of an object's own spheres.
+    pub const OWN_BIAS: f32 = 0.25;
 }
 
 /// From exposed light to the picture: vignette, colour, tone curve, and grain on what is encoded.

@@ -8,6 +8,7 @@
 //! | file | what it does |
 //! |---|---|
 //! | [`abi`] | the structs both engines read |
+//! | `blockers` | bodies as spheres, for ambient occlusion |
 //! | `cast` | the people of earlier frames |
 //! | [`frustum`] | what the camera may see, and whose shadow it may see |
 //! | `lights` | lights in view space |
@@ -16,6 +17,7 @@
 //! | `surfaces` | materials and the textures they name |
 
 pub mod abi;
+mod blockers;
 mod cast;
 pub mod frustum;
 mod grade;
@@ -61,6 +63,8 @@ pub struct DrawnPerson {
     pub instance: u16,
     /// Index in the draw list's objects, if drawn.
     pub object: Option<u32>,
+    /// Index in the draw list's objects of what the person sits on, if drawn.
+    pub seat: Option<u32>,
     /// Posed COCO-17 keypoints, metres, view space.
     pub keypoints_in_view: [DVec3; 17],
     /// How far in front of each keypoint the surface of its own limb may lie, metres.
@@ -255,5 +259,6 @@ pub(crate) fn empty_object() -> abi::DrawObject {
         in_view: true,
         casts_shadow: false,
         smooth: true,
+        blockers: 0..0,
     }
 }

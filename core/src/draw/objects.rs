@@ -18,7 +18,8 @@ pub fn add(drawing: &mut Drawing) -> Result<(), DrawError> {
     Ok(())
 }
 
-fn add_one(drawing: &mut Drawing, object: &Object) -> Result<Option<u32>, DrawError> {
+/// Adds an object; gives its index in the draw list, if it matters to the picture.
+pub fn add_one(drawing: &mut Drawing, object: &Object) -> Result<Option<u32>, DrawError> {
     let view_from_model = drawing.view_from_world * world_from_model(&object.placement);
     let scale = object.placement.scale.abs().max_element();
     let hull = corners(&view_from_model);
@@ -49,6 +50,7 @@ fn add_one(drawing: &mut Drawing, object: &Object) -> Result<Option<u32>, DrawEr
         // What stands behind everything shades nothing; leaving it out keeps the map tight.
         casts_shadow: relevance.casts_shadow && object.role == Role::Occluder,
         smooth: object.shape.is_smooth(),
+        blockers: 0..0,
     });
     Ok(Some(index))
 }

@@ -3,18 +3,20 @@
 //! A person's few always-needed vertices (joints, keypoints, contact points) are evaluated first;
 //! whoever neither shows nor casts a visible shadow is never dressed.
 
+use std::ops::Range;
 use std::sync::Arc;
 
 use glam::{DAffine3, DVec3};
 use rayon::prelude::*;
 
 use super::frustum::Sphere;
-use super::objects::world_from_model;
-use super::{Cast, DrawError, Drawing, DrawnPerson, Relevance, abi, rows};
+use super::objects::{self, world_from_model};
+use super::{Cast, DrawError, Drawing, DrawnPerson, Relevance, abi, blockers, rows};
 use crate::geometry::body::RestBody;
 use crate::geometry::person::{Dressed, MeshKey};
 use crate::geometry::points;
 use crate::geometry::pose::PosedSkeleton;
+use crate::geometry::seat::seat_block;
 use crate::geometry::skeleton::{JOINT_COUNT, Limb, Side, trunk};
 use crate::geometry::stance::Stance;
 use crate::geometry::surface::surface;
@@ -22,7 +24,7 @@ use crate::geometry::sway;
 use crate::library::Library;
 use crate::library::figure::LOD_COUNT;
 use crate::library::pose::PREFIX;
-use crate::scene::{OuterKind, Outfit, Person, Pose, PoseBlend};
+use crate::scene::{Object, OuterKind, Outfit, Person, Placement, Pose, PoseBlend, Role};
 
 /// How much of a limb's thickness may lie in front of a keypoint before it counts as hidden: limbs
 /// are seen at a slant, and clothes stand off.
@@ -67,8 +69,13 @@ pub fn add(drawing: &mut Drawing) -> Result<(), DrawError> {
     for (index, ((posed, relevance), dressed)) in
         posed.iter().zip(&relevances).zip(dressed).enumerate()
     {
-        let object = dressed.map(|d| add_mesh(drawing, posed, *relevance, &d)).transpose()?;
-        drawing.drawn.people.push(describe(index, posed, object));
+        let mut drawn = describe(index, posed);
+        if let Some(dressed) = dressed {
+            let blockers = add_blockers(drawing, posed, *relevance, &drawn);
+            drawn.object = Some(add_mesh(drawing, posed, *relevance, &dressed, blockers)?);
+        }
+        drawn.seat = add_seat(drawing, posed)?;
+        drawing.drawn.people.push(drawn);
     }
     Ok(())
 }
@@ -182,6 +189,7 @@ fn add_mesh(
     posed: &Posed,
     relevance: Relevance,
     dressed: &Dressed,
+    blockers: Range<u32>,
 ) -> Result<u32, DrawError> {
     let px_per_m = drawing.px_per_m(&posed.hull) * posed.scale;
     let list = &mut drawing.drawn.list;
@@ -218,11 +226,55 @@ fn add_mesh(
         in_view: relevance.in_view,
         casts_shadow: relevance.casts_shadow,
         smooth: true,
+        blockers,
     });
     Ok(index)
 }
 
-fn describe(index: usize, posed: &Posed, object: Option<u32>) -> DrawnPerson {
+/// Adds what somebody sits on, where that may be seen.
+fn add_seat(drawing: &mut Drawing, posed: &Posed) -> Result<Option<u32>, DrawError> {
+    let Some(seat) = posed.person.seat.as_ref().filter(|_| drawing.options.raster) else {
+        return Ok(None);
+    };
+    let Some(block) = seat_block(&posed.skeleton, &posed.body) else { return Ok(None) };
+    let person = &posed.person.placement;
+    let placement = Placement {
+        position_m: world_from_model(person).transform_point3(block.middle_m),
+        rotation: person.rotation * block.rotation,
+        scale: block.size_m * posed.scale,
+    };
+    let (shape, material) = (seat.shape, seat.material.clone());
+    objects::add_one(drawing, &Object { role: Role::Occluder, shape, placement, material })
+}
+
+/// Adds what keeps surrounding light off places near somebody.
+fn add_blockers(
+    drawing: &mut Drawing,
+    posed: &Posed,
+    relevance: Relevance,
+    drawn: &DrawnPerson,
+) -> Range<u32> {
+    let wanted = drawing.options.shading && drawing.scene.lights.environment.ambient_occlusion;
+    if !wanted || !relevance.in_view {
+        return 0..0;
+    }
+    let (body, skeleton) = (&posed.body, &posed.skeleton);
+    let toe = |side: Side| {
+        let joint = side.joint(Limb::ToeBase);
+        posed.view_from_model.transform_point3(skeleton.joint_m(joint, body.heads_m[joint]))
+    };
+    let figure = blockers::Figure {
+        keypoints: &drawn.keypoints_in_view,
+        radii_m: std::array::from_fn(|k| body.keypoints[k].radius_m * posed.scale),
+        toes: Side::BOTH.map(toe),
+        px_per_m: drawing.px_per_m(&posed.hull),
+        stature_m: body.stature_m * posed.scale,
+    };
+    blockers::add(&mut drawing.drawn.list.blockers, &figure)
+}
+
+/// What is known of a person without being drawn.
+fn describe(index: usize, posed: &Posed) -> DrawnPerson {
     let bones = &posed.skeleton.model_from_rest;
     let regressors = &posed.body.keypoints;
     let in_view = |k: usize| {
@@ -237,7 +289,8 @@ fn describe(index: usize, posed: &Posed, object: Option<u32>) -> DrawnPerson {
     DrawnPerson {
         person: index,
         instance: posed.person.slot as u16 + 1,
-        object,
+        object: None,
+        seat: None,
         keypoints_in_view: std::array::from_fn(in_view),
         keypoint_tolerance_m: std::array::from_fn(|k| {
             (regressors[k].radius_m * LIMB_SLACK + cover_m(k)) * posed.scale

@@ -58,6 +58,7 @@ pub fn scene(frame: u32) -> Scene {
                 sky_lux: [1.0; 3],
                 ground_lux: [0.5; 3],
                 background_nits: [0.1; 3],
+                ambient_occlusion: false,
                 image: None,
             },
         },

@@ -18,6 +18,7 @@
 //! | [`hang`], `sway` | joints of cloth that hangs round both legs |
 //! | [`stance`], `hand` | what joints and fingers are to do |
 //! | [`trunk`], `settle` | keep arms out of trunks, lay bodies on the ground |
+//! | [`seat`] | what sitting people sit on |
 //! | [`points`] | poses single vertices in double precision |
 //! | [`shape`] | primitive shapes |
 //! | `wide` | functions for processors with wider vectors |
@@ -41,6 +42,7 @@ pub mod phenotype;
 pub mod points;
 pub mod pose;
 mod refine;
+pub mod seat;
 mod settle;
 pub mod shape;
 mod shown;

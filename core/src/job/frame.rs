@@ -15,6 +15,8 @@ use crate::engine::{Engine, EngineError};
 use crate::label;
 use crate::library::Library;
 use crate::library::textures::TextureGroup;
+use crate::library::clip::Clip;
+use crate::library::pose::Pose;
 use crate::plan::{Delivery, Frame, Outputs, Pass, PassPlan, SceneFacts, StageTimes};
 use crate::sampling::{self, Activity, Catalogue, SampleError, Sampler};
 use crate::scene::{Camera, Scene};
@@ -201,13 +203,22 @@ impl Studio {
 /// The names of what a library holds.
 #[must_use]
 pub fn catalogue(library: &Library) -> Catalogue {
-    let activity =
-        |id: &str, activity: &str| Activity { id: id.to_owned(), activity: activity.to_owned() };
+    let of_clip = |clip: &Clip| Activity {
+        id: clip.id.clone(),
+        activity: clip.activity().to_owned(),
+        ..Activity::default()
+    };
+    let of_pose = |pose: &Pose| Activity {
+        id: pose.id.clone(),
+        activity: pose.activity.clone(),
+        seated: pose.seated,
+        unsuited: pose.unsuited.clone(),
+    };
     Catalogue {
         face_targets: library.figure.face_shape_names().map(str::to_owned).collect(),
         face_units: library.figure.face_unit_names().map(str::to_owned).collect(),
-        clips: library.clips.all().iter().map(|c| activity(&c.id, c.activity())).collect(),
-        poses: library.poses.all().iter().map(|p| activity(&p.id, &p.activity)).collect(),
+        clips: library.clips.all().iter().map(of_clip).collect(),
+        poses: library.poses.all().iter().map(of_pose).collect(),
         textures: library.surface_textures(),
         cloth_patterns: library.textures.ids(TextureGroup::Cloth).to_vec(),
         environments: library.environments.ids().to_vec(),

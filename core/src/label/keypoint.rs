@@ -132,6 +132,7 @@ mod tests {
     /// A 5x5 picture of one person (object 0) and one box (object 1).
     fn drawn() -> Drawn {
         let person = DrawnPerson {
+            seat: None,
             person: 0,
             instance: 7,
             object: Some(0),

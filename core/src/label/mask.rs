@@ -98,8 +98,13 @@ pub fn classes(scene: &Scene, drawn: &Drawn) -> Vec<u8> {
             classes[index as usize + 1] = SemanticClass::from(object.role).id();
         }
     }
-    for index in drawn.people.iter().filter_map(|p| p.object) {
-        classes[index as usize + 1] = SemanticClass::Person.id();
+    for person in &drawn.people {
+        let own = [(person.object, SemanticClass::Person), (person.seat, SemanticClass::Occluder)];
+        for (index, class) in own {
+            if let Some(index) = index {
+                classes[index as usize + 1] = class.id();
+            }
+        }
     }
     classes
 }

@@ -131,6 +131,8 @@ const PARAMS: &[(&str, Key)] = &[
     ("people.pose.blend.phase", keys::BLEND_PHASE),
     ("people.pose.blend.share", keys::BLEND_SHARE),
     ("people.pose.gaze_deg", keys::GAZE),
+    ("people.seats.color", keys::SEAT_COLOR),
+    ("people.seats.hue_offset_deg", keys::SEAT_HUE),
     ("materials.roughness", keys::MATERIAL_ROUGHNESS),
     ("materials.metallic", keys::MATERIAL_METALLIC),
     ("materials.normal_strength", keys::MATERIAL_NORMAL),

@@ -157,6 +157,10 @@ keys! {
     LAMP_TEMPERATURE = "lights.lamp.temperature",
     JPEG_QUALITY = "output.jpeg_quality",
     OCCLUDER_IN_VIEW = "occluders.placement.in_view",
+    SEAT_SHAPE = "people.seats.shape",
+    SEAT_TEXTURE = "people.seats.texture",
+    SEAT_COLOR = "people.seats.color",
+    SEAT_HUE = "people.seats.hue_offset",
 }
 
 #[cfg(test)]

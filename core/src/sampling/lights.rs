@@ -137,6 +137,7 @@ fn environment(lights: &document::Lights, pictures: &[String], draws: Draws) -> 
             &e.background_color,
             keys::BACKGROUND_COLOR,
         ),
+        ambient_occlusion: e.ambient_occlusion,
         image: image(lights, pictures, draws),
     }
 }

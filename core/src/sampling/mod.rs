@@ -8,6 +8,7 @@ use std::sync::Arc;
 
 use crate::document::cast::Member;
 use crate::document::{Choice, Distribution, Document, Problem, file::Problems, params, validate};
+use crate::library::pose::Wear;
 use crate::scene::{Person, Scene};
 
 mod address;
@@ -64,6 +65,10 @@ pub struct Activity {
     pub id: String,
     /// What a person does who follows it.
     pub activity: String,
+    /// Whether that needs something to sit on.
+    pub seated: bool,
+    /// What nobody does it in.
+    pub unsuited: Vec<Wear>,
 }
 
 /// Why a frame could not be sampled.

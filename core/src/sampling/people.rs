@@ -24,6 +24,7 @@ pub(super) fn people(
     let person = |(slot, position_m)| {
         let who = standing.who(slot);
         let (body, look, outfit) = company.person(who.known, who.lasting, who.here);
+        let (pose, seat) = pose::pose(people, &outfit, catalogue, who.here);
         Person {
             slot,
             identity: who.identity,
@@ -32,7 +33,8 @@ pub(super) fn people(
             body,
             look,
             outfit,
-            pose: pose::pose(&people.pose, catalogue, who.here),
+            pose,
+            seat,
         }
     };
     standing.places().points.into_iter().map(person).collect()

@@ -1,30 +1,50 @@
-//! What a person does.
+//! What a person does, and on what.
 
+use super::background::asset;
 use super::linked::Draw;
 use super::people::Source;
-use super::value::{flag, item, number};
-use super::{Catalogue, keys, quantile};
+use super::value::{color, flag, item, number};
+use super::{Activity, Catalogue, keys, quantile};
 use crate::document::{self, Auto, Choice, Normal};
+use crate::library::pose::Wear;
 use crate::library::pose::angle::Angle;
-use crate::scene::{HandShape, Pose, PoseBlend};
+use crate::scene::{HandShape, Material, OuterKind, Outfit, Pose, PoseBlend, Seat};
 
 /// No variation strays farther, in standard deviations.
 const FARTHEST: f64 = 2.5;
 /// Lanes between the angles of the trunk, of the left and of the right.
 const PLACE_LANES: usize = 64;
+/// Of wood, cloth and plastics alike.
+const SEAT_ROUGHNESS: f64 = 0.6;
 
-pub(super) fn pose(pose: &document::Pose, catalogue: &Catalogue, source: Source) -> Pose {
+/// How many poses are drawn for clothes that they may not suit.
+const TRIES: u16 = 32;
+
+/// What somebody in some clothes does, and what that takes to sit on.
+pub(super) fn pose(
+    people: &document::People,
+    outfit: &Outfit,
+    catalogue: &Catalogue,
+    source: Source,
+) -> (Pose, Option<Seat>) {
+    let (pose, here) = (&people.pose, source);
     let source = source.random_if(pose.enabled);
-    let name = activity(&pose.clip, catalogue, source.of(keys::CLIP));
+    let tries = if pose.suits_clothes { TRIES } else { 1 };
+    let clip = source.of(keys::CLIP);
+    let mut drawn = (0..tries).map(|i| activity(&pose.clip, catalogue, clip, i));
+    let suits = |name: &&Activity| name.unsuited.iter().all(|wear| !is_worn(*wear, outfit));
+    let first = drawn.next().unwrap_or(&NOTHING);
+    let name = if suits(&first) { first } else { drawn.find(suits).unwrap_or(first) };
     let share = number(&pose.blend.share, source.of(keys::BLEND_SHARE));
     let second = &pose.blend.clip;
     let blend = (share > 0.0).then(|| PoseBlend {
-        clip: activity(second, catalogue, source.of(keys::BLEND_CLIP)).id.clone(),
+        clip: activity(second, catalogue, source.of(keys::BLEND_CLIP), 0).id.clone(),
         phase: number(&pose.blend.phase, source.of(keys::BLEND_PHASE)),
         share,
     });
     let gaze = source.of(keys::GAZE);
-    Pose {
+    let seat = (name.seated && people.seats.enabled).then(|| seat(&people.seats, catalogue, here));
+    let pose = Pose {
         phase: number(&pose.phase, source.of(keys::PHASE)),
         mirrored: flag(&pose.mirrored, source.of(keys::MIRRORED)),
         activity: done(name, blend.as_ref(), catalogue).to_owned(),
@@ -33,20 +53,49 @@ pub(super) fn pose(pose: &document::Pose, catalogue: &Catalogue, source: Source)
         hands: hands(&pose.hands, name, catalogue, source),
         clip: name.id.clone(),
         blend,
+    };
+    (pose, seat)
+}
+
+/// Something to sit on, of no certain size.
+fn seat(seats: &document::Seats, catalogue: &Catalogue, source: Source) -> Seat {
+    Seat {
+        shape: *item(&seats.shape, source.of(keys::SEAT_SHAPE)),
+        material: Material {
+            texture: asset(&seats.texture, &catalogue.textures, source.of(keys::SEAT_TEXTURE)),
+            base_color: color(&seats.color, source.of(keys::SEAT_COLOR)),
+            hue_offset_deg: number(&seats.hue_offset_deg, source.of(keys::SEAT_HUE)),
+            uv_repeat: [1.0; 2],
+            roughness: SEAT_ROUGHNESS,
+            metallic: 0.0,
+            normal_strength: 1.0,
+        },
     }
 }
 
-/// The clip or pose that a choice falls on. The catalogue holds what the choice names.
+/// Whether an outfit has such clothes.
+fn is_worn(wear: Wear, outfit: &Outfit) -> bool {
+    match wear {
+        Wear::Skirt => outfit.bottom.kind.is_skirt(),
+        Wear::Jacket => outfit.outer.kind == OuterKind::Jacket,
+        Wear::Coat => outfit.outer.kind == OuterKind::Coat,
+    }
+}
+
+static NOTHING: Activity =
+    Activity { id: String::new(), activity: String::new(), seated: false, unsuited: Vec::new() };
+
+/// The clip or pose that a choice falls on when it is drawn once more. The catalogue holds what the choice names.
 fn activity<'a>(
     choice: &Choice<String>,
     catalogue: &'a Catalogue,
     draw: Draw,
-) -> &'a super::Activity {
-    static NOTHING: super::Activity =
-        super::Activity { id: String::new(), activity: String::new() };
+    again: u16,
+) -> &'a Activity {
+    let draws = [2 * again, 2 * again + 1].map(|lane| draw.lane(lane));
     let (clips, poses) = (&catalogue.clips, &catalogue.poses);
-    let one_of = |n: usize| (draw.lane(1).uniform() * n as f64) as usize;
-    let found = match item(choice, draw).as_str() {
+    let one_of = |n: usize| (draws[1].uniform() * n as f64) as usize;
+    let found = match item(choice, draws[0]).as_str() {
         "any_clip" => clips.get(one_of(clips.len())),
         "any_pose" => poses.get(one_of(poses.len())),
         "any" => clips.iter().chain(poses).nth(one_of(clips.len() + poses.len())),
@@ -56,11 +105,7 @@ fn activity<'a>(
 }
 
 /// The activity of whichever has the greater share.
-fn done<'a>(
-    first: &'a super::Activity,
-    blend: Option<&PoseBlend>,
-    catalogue: &'a Catalogue,
-) -> &'a str {
+fn done<'a>(first: &'a Activity, blend: Option<&PoseBlend>, catalogue: &'a Catalogue) -> &'a str {
     let second = blend
         .filter(|b| b.share > 0.5)
         .and_then(|b| catalogue.clips.iter().chain(&catalogue.poses).find(|a| a.id == b.clip));
@@ -86,7 +131,7 @@ fn variation(amount: f64, source: Source) -> Vec<(String, f64)> {
 /// What the left and the right hand do; nothing where the pose knows best.
 fn hands(
     hands: &Auto<Choice<HandShape>>,
-    name: &super::Activity,
+    name: &Activity,
     catalogue: &Catalogue,
     source: Source,
 ) -> Option<[HandShape; 2]> {

@@ -16,7 +16,7 @@ pub use camera::Camera;
 pub use outfit::{Bottom, BottomKind, Outer, OuterKind, Outfit, ShoeKind, Shoes, Top, TopKind};
 pub use person::{
     BeardStyle, Body, Glasses, HairStyle, HandShape, Headwear, HeadwearKind, Look, Person, Pose,
-    PoseBlend, Sex,
+    PoseBlend, Seat, Sex,
 };
 pub use post::{Post, ToneCurve};
 
@@ -104,6 +104,9 @@ pub struct Environment {
     pub ground_lux: [f64; 3],
     /// Linear luminance in nits of the background where nothing stands.
     pub background_nits: [f64; 3],
+    /// Whether bodies keep this light off what is near them.
+    #[serde(default)]
+    pub ambient_occlusion: bool,
     /// Stands in for all of these.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub image: Option<EnvironmentImage>,

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{Outfit, Placement};
+use super::{Material, Outfit, Placement, Shape};
 
 /// A person in a scene.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -26,6 +26,18 @@ pub struct Person {
     pub outfit: Outfit,
     /// Pose.
     pub pose: Pose,
+    /// What the person sits on; as high and as wide as the body needs.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub seat: Option<Seat>,
+}
+
+/// Something to sit on, without its size.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Seat {
+    /// Form.
+    pub shape: Shape,
+    /// What it is made of.
+    pub material: Material,
 }
 
 /// Anatomical sex of the body model.

@@ -227,6 +227,8 @@ fn hostile_values_are_refused_with_their_path() {
         ("/people/pose/blend/share", json!(-0.1), "people.pose.blend.share"),
         ("/people/pose/blend/clip", json!(""), "people.pose.blend.clip"),
         ("/people/pose/gaze_deg", json!([0, 200]), "people.pose.gaze_deg[1]"),
+        ("/people/seats/shape", json!({"choice": []}), "people.seats.shape.choice"),
+        ("/people/seats/color", json!([0, 0, 2]), "people.seats.color[2]"),
         ("/people/pose/hands", json!({"choice": []}), "people.pose.hands.choice"),
         ("/materials/roughness", json!(0), "materials.roughness"),
         ("/post/exposure_ev", json!(1e9), "post.exposure_ev"),

@@ -380,7 +380,7 @@ fn shading<'a>(
         stage: Stage {
             geometry: Geometry { chunks, vertices: &placed.vertices },
             rays: Rays::new(view),
-            lighting: Lighting::new(&list.lights, list.exposure, &view.view_from_world, shadow),
+            lighting: Lighting::new(list, shadow),
             develop: Develop::new(list),
         },
         surfaces: list.materials.iter().map(|m| Surface::new(m, list)).collect(),

@@ -14,7 +14,7 @@ use super::raster::raster_tile;
 use super::reduce;
 use super::resolve::{Resolved, SampleObjects, objects_of_samples, resolve};
 use super::samples::{BLOCK, Layout, TILE};
-use super::shade::{DrawnSurface, Stage, Surface, TileColor, shade};
+use super::shade::{DrawnSurface, Reaching, Stage, Surface, TileColor, shade};
 use super::simd::{F32x8, LANES, Level, kernel};
 use super::{develop, display, skin};
 use crate::draw::DrawList;
@@ -44,7 +44,7 @@ pub(super) struct Scratch {
     /// The lens's tile where those are not kept.
     lens: LensTile,
     fragments: Fragments,
-    reaching: Vec<u32>,
+    reaching: Reaching,
     color: Box<TileColor>,
     /// Grain by pixel slot, 1/255.
     noise: Box<[f32; TILE * TILE]>,
@@ -64,7 +64,7 @@ impl Default for Scratch {
             farthest: Vec::new(),
             lens: LensTile::default(),
             fragments: Fragments::default(),
-            reaching: Vec::new(),
+            reaching: Reaching::default(),
             color: Box::new([[0.0; TILE * TILE]; 3]),
             noise: Box::new([0.0; TILE * TILE]),
             bytes: Box::new([[0; 3]; TILE * TILE]),
@@ -246,6 +246,7 @@ impl TilePass<'_> {
                     surface: &shading.surfaces[draw.material as usize],
                     double_sided: draw.double_sided,
                     mirrored: self.placed.mirrored[draw.object as usize],
+                    blockers: &self.list.objects[draw.object as usize].blockers,
                 };
                 let (level, stage, reaching) = (self.level, &shading.stage, &s.reaching);
                 let (color, rays) = (&mut s.color, lens.map(|lens| &*lens.rays));

@@ -38,8 +38,8 @@ pub struct Frame {
     pub tone_curve: u32,
     pub has_environment: u32,
     pub environment_unit: f32,
+    pub blocker_count: u32,
     pub pad5: u32,
-    pub pad6: u32,
     pub environment_from_view: [[f32; 4]; 3],
     pub environment_levels: [[u32; 4]; 3],
     pub environment_irradiance: [[f32; 4]; 10],
@@ -189,8 +189,15 @@ pub struct Surface {
     pub map_info: [u32; 4],
     pub object: u32,
     pub pad0: u32,
-    pub pad1: u32,
-    pub pad2: u32,
+    pub own_blockers: [u32; 2],
+}
+
+/// A sphere in the way of surrounding light.
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+#[repr(C)]
+pub struct Blocker {
+    pub center: [f32; 3],
+    pub radius_m: f32,
 }
 
 /// A point light, scaled by the exposure.

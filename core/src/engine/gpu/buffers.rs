@@ -122,7 +122,7 @@ const fn name(resource: Resource) -> &'static str {
         Resource::Texels => "graphics memory of textures",
         Resource::Palette => "graphics memory of joints",
         Resource::Surfaces => "graphics memory of materials",
-        Resource::Lights => "graphics memory of lights",
+        Resource::Lights | Resource::Blockers => "graphics memory of lights",
         Resource::Primitives | Resource::SunPrimitives => "graphics memory of visible triangles",
         Resource::Counters | Resource::SunCounters => "graphics memory of counters",
         Resource::Crossing => "graphics memory of triangles to be cut",

@@ -61,6 +61,7 @@ use self::record::{Clock, Recorder};
 use self::stage::{Resource, Stage};
 use super::{Engine, EngineError, input, resized};
 use crate::draw::DrawList;
+use crate::draw::abi::MAX_BLOCKERS;
 use crate::library::mesh::Mesh;
 use crate::library::texture::Texture;
 use crate::plan::{Delivery, Frame, ObjectSamples, Pass, PassPlan, StageTimes};
@@ -350,6 +351,9 @@ impl State {
         }
         buffers.ensure(device, Resource::Lights, limit * size_of::<abi::Light>() as u64)?;
         buffers.write(device, Resource::Lights, &packed.lights)?;
+        let room = (MAX_BLOCKERS * size_of::<abi::Blocker>()) as u64;
+        buffers.ensure(device, Resource::Blockers, room)?;
+        buffers.write(device, Resource::Blockers, &packed.blockers)?;
         buffers.ensure(device, Resource::SunView, size_of::<abi::SunView>() as u64)?;
         let sun = pack::sun_target(packed);
         buffers.write(device, Resource::SunTarget, &[sun])?;

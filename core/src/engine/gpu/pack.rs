@@ -1,7 +1,7 @@
 //! Pack: a draw list as the records that the shaders read.
 
 use super::abi::{
-    self, DOUBLE_SIDED, Frame, Light, MAP_COLOR, MAP_PRESENT, MIRRORED, SMOOTH, Surface,
+    self, Blocker, DOUBLE_SIDED, Frame, Light, MAP_COLOR, MAP_PRESENT, MIRRORED, SMOOTH, Surface,
     TRIANGLE_BATCH, Target, TriangleBatch, VERTEX_BATCH, VERTEX_WORDS, VertexBatch,
 };
 use crate::draw::DrawList;
@@ -53,6 +53,7 @@ pub struct Packed {
     pub palette: Vec<[f32; 4]>,
     pub surfaces: Vec<Surface>,
     pub lights: Vec<Light>,
+    pub blockers: Vec<Blocker>,
     /// Placed vertices.
     pub vertices: u32,
     /// Triangles before culling, of the picture and of the sun's map.
@@ -114,6 +115,11 @@ impl Packed {
             per_range_m2: 1.0 / (p.range_m * p.range_m),
             color_cd: p.color_cd.map(|v| v * list.exposure),
             per_radius_m: 1.0 / p.radius_m.max(1e-6),
+        }));
+        self.blockers.clear();
+        self.blockers.extend(list.blockers.iter().map(|b| {
+            let (center, radius_m) = (b.center, b.radius_m);
+            Blocker { center, radius_m }
         }));
         self.frame = frame(list, shadow);
         add_surroundings(&mut self.frame, list, *surroundings);
@@ -247,6 +253,7 @@ fn frame(list: &DrawList, shadow: bool) -> Frame {
         has_shadow: shadow.into(),
         up: view.view_from_world.map(|row| row[1]),
         object_count: list.objects.len() as u32,
+        blocker_count: list.blockers.len() as u32,
         sky: exposed(lights.sky_lux),
         ground: exposed(lights.ground_lux),
         background: exposed(lights.background_nits),
@@ -321,6 +328,10 @@ fn surface(material: &Material, list: &DrawList, textures: &[u32], object: u32) 
         map_first: maps.map(|m| m.map_or(0, |i| textures[i as usize])),
         map_info: maps.map(|m| m.map_or(0, |i| info(&list.textures[i as usize]))),
         object,
+        own_blockers: {
+            let own = &list.objects[object as usize].blockers;
+            [own.start, own.end]
+        },
         ..Surface::default()
     }
 }

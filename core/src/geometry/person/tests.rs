@@ -103,6 +103,7 @@ fn person(i: usize) -> Person {
         },
         outfit: outfit(i, x),
         pose: Pose::default(),
+        seat: None,
     }
 }
 

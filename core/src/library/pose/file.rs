@@ -15,7 +15,8 @@
 //! out are 0, and a side's own come before those of `both`. `root` turns the pelvis (`turn`,
 //! `pitch`, `roll`, degrees). `hand` is a shape of the fingers; `foot` is `free`, `level` or
 //! `planted` on the ground, and the ankle follows. Where `rests` is true, the body tilts until it
-//! rests on the ground.
+//! rests on the ground. Where `seated` is true, it takes something to sit on. `unsuited` lists what
+//! nobody wears in it: `skirt` (dresses too), `jacket`, `coat`.
 //! `freedom` (`trunk`, `arms`, `legs`, 0..1) says how much of a variation the pose can bear.
 
 use std::path::{Path, PathBuf};
@@ -23,7 +24,7 @@ use std::path::{Path, PathBuf};
 use serde_json::{Map, Value};
 
 use super::angle::{Angles, Reach, SIDE, SIDE_NAMES, TRUNK};
-use super::{Foot, Freedom, PREFIX, Pose, PoseFile, Poses, Root};
+use super::{Foot, Freedom, PREFIX, Pose, PoseFile, Poses, Root, Wear};
 use crate::base::hash::content_hash;
 use crate::document::file::MAX_BYTES;
 use crate::document::{self, HandShape, Problem};
@@ -159,7 +160,10 @@ fn pose(name: &str, value: &Value) -> Result<Pose> {
         return Err(problem(&format!("poses.{name}"), message));
     }
     let all = fields(value, name)?;
-    let parts = ["activity", "rests", "root", "trunk", "both", "left", "right", "freedom"];
+    let parts = [
+        "activity", "rests", "seated", "unsuited", "root", "trunk", "both", "left", "right",
+        "freedom",
+    ];
     known(all, name, &parts)?;
     let activity = match all.get("activity") {
         Some(Value::String(text)) if !text.is_empty() => text.clone(),
@@ -169,12 +173,12 @@ fn pose(name: &str, value: &Value) -> Result<Pose> {
             return Err(problem(&format!("{name}.activity"), message));
         }
     };
-    let rests = match all.get("rests") {
-        None => false,
-        Some(Value::Bool(rests)) => *rests,
+    let flag = |field: &str| match all.get(field) {
+        None => Ok(false),
+        Some(Value::Bool(flag)) => Ok(*flag),
         Some(other) => {
             let message = format!("must be true or false, got {other}");
-            return Err(problem(&format!("{name}.rests"), message));
+            Err(problem(&format!("{name}.{field}"), message))
         }
     };
     let part = |part: &'static str| -> Result<Part> {
@@ -191,7 +195,9 @@ fn pose(name: &str, value: &Value) -> Result<Pose> {
         angles: Angles::default(),
         hands: [HandShape::Relaxed; 2],
         feet: [Foot::Free; 2],
-        rests,
+        rests: flag("rests")?,
+        seated: flag("seated")?,
+        unsuited: unsuited(all.get("unsuited"), &format!("{name}.unsuited"))?,
         freedom: freedom(&part("freedom")?)?,
     };
     let trunk = part("trunk")?;
@@ -211,6 +217,28 @@ fn pose(name: &str, value: &Value) -> Result<Pose> {
         elbow_stays_out(&out.angles.side_deg[i], &format!("{name}.{}", SIDE_NAMES[i]))?;
     }
     Ok(out)
+}
+
+fn unsuited(value: Option<&Value>, path: &str) -> Result<Vec<Wear>> {
+    let none = Vec::new();
+    let list = match value {
+        None => &none,
+        Some(Value::Array(list)) => list,
+        Some(other) => {
+            return Err(problem(path, format!("expected a list of clothes [ ], got {other}")));
+        }
+    };
+    let wear = |(i, item): (usize, &Value)| {
+        let found = Wear::ALL.into_iter().find(|wear| item.as_str() == Some(wear.name()));
+        found.ok_or_else(|| {
+            let names = Wear::ALL.map(Wear::name).join(", ");
+            problem(&format!("{path}[{i}]"), format!("must be one of {names}, got {item}"))
+        })
+    };
+    let mut all = list.iter().enumerate().map(wear).collect::<Result<Vec<_>>>()?;
+    all.sort_unstable();
+    all.dedup();
+    Ok(all)
 }
 
 fn root(part: &Part) -> Result<Root> {
@@ -315,13 +343,15 @@ mod tests {
     #[test]
     fn sides_come_before_both_and_the_rest_is_zero() {
         let pose = read(
-            r#"{"activity": "testing", "rests": true, "root": {"pitch": -90}, "trunk": {"head_twist": 12},
+            r#"{"activity": "testing", "rests": true, "seated": true, "unsuited": ["coat", "skirt", "coat"],
+            "root": {"pitch": -90}, "trunk": {"head_twist": 12},
             "both": {"knee_flexion": 30, "hip_flexion": 10, "hand": "fist", "foot": "planted"},
             "right": {"knee_flexion": 40, "hand": "point", "foot": "free"},
             "freedom": {"legs": 0.25}}"#,
         )
         .unwrap();
-        assert_eq!((pose.activity.as_str(), pose.rests), ("testing", true));
+        assert_eq!((pose.activity.as_str(), pose.rests, pose.seated), ("testing", true, true));
+        assert_eq!(pose.unsuited, [Wear::Skirt, Wear::Coat]);
         assert_eq!(pose.root_deg, Root { pitch: -90.0, ..Root::default() });
         let mut angles = Angles::default();
         angles.trunk_deg[Trunk::HeadTwist as usize] = 12.0;
@@ -363,6 +393,18 @@ mod tests {
                 "p.both.foot: must be one of free, level, planted",
             ),
             (r#"{"activity": "a", "rests": 1}"#, "p.rests: must be true or false, got 1"),
+            (
+                r#"{"activity": "a", "seated": "yes"}"#,
+                "p.seated: must be true or false, got \"yes\"",
+            ),
+            (
+                r#"{"activity": "a", "unsuited": 3}"#,
+                "p.unsuited: expected a list of clothes [ ], got 3",
+            ),
+            (
+                r#"{"activity": "a", "unsuited": ["coat", "hat"]}"#,
+                "p.unsuited[1]: must be one of skirt, jacket, coat, got \"hat\"",
+            ),
             (r#"{"activity": "a", "root": {"roll": 400}}"#, "p.root.roll: must be a number from"),
             (r#"{"activity": "a", "freedom": {"arms": 2}}"#, "p.freedom.arms: must be a number"),
             (

@@ -36,8 +36,38 @@ pub struct Pose {
     /// Whether the body tilts until it rests on the ground at both ends: who lies, sits on the
     /// floor or props himself up.
     pub rests: bool,
+    /// Whether it takes something to sit on.
+    pub seated: bool,
+    /// What nobody takes it in, ascending.
+    pub unsuited: Vec<Wear>,
     /// Share of the variation that trunk, arms and legs take part in, 0..1.
     pub freedom: Freedom,
+}
+
+/// Clothes that not every pose is taken in.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Wear {
+    /// A skirt or a dress.
+    Skirt,
+    /// A jacket.
+    Jacket,
+    /// A coat.
+    Coat,
+}
+
+impl Wear {
+    /// All of them.
+    pub const ALL: [Self; 3] = [Self::Skirt, Self::Jacket, Self::Coat];
+
+    /// Its name in pose files.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Skirt => "skirt",
+            Self::Jacket => "jacket",
+            Self::Coat => "coat",
+        }
+    }
 }
 
 /// How a pelvis is turned, degrees.

@@ -26,14 +26,18 @@
 //! Fn = F1 Fm lost / (1 - Fm lost)
 //! L F1 + E / pi (Fn + albedo (1 - metallic) (1 - F1 - Fn))
 //! ```
+//!
+//! All of it times what [`Blocker`]s let through.
 
 use std::f32::consts::PI;
+use std::ops::Range;
 
 use super::GROUPS;
 use super::environment::EnvironmentLight;
 use super::material::Look;
 use super::surface::Points;
-use crate::draw::abi::Lights;
+use crate::draw::DrawList;
+use crate::draw::abi::Blocker;
 use crate::engine::cpu::shadow::map::SunShadow;
 use crate::engine::cpu::simd::{F32x8, Vec3x8};
 
@@ -66,12 +70,42 @@ struct Wrap {
     scale: f32,
 }
 
+/// A sphere in the way of surrounding light.
+#[derive(Clone, Copy)]
+struct Sphere {
+    center: [f32; 3],
+    /// Squared radius.
+    radius_m2: f32,
+    /// Squared reach, and its inverse.
+    reach_m2: f32,
+    per_reach_m2: f32,
+}
+
+impl Sphere {
+    fn new(blocker: &Blocker) -> Self {
+        let Blocker { center, radius_m } = *blocker;
+        let reach_m2 = (Blocker::REACH * radius_m) * (Blocker::REACH * radius_m);
+        let radius_m2 = radius_m * radius_m;
+        Self { center, radius_m2, reach_m2, per_reach_m2: 1.0 / reach_m2.max(1e-12) }
+    }
+}
+
+/// What of the lights matters to a tile.
+#[derive(Clone, Debug, Default)]
+pub(in crate::engine::cpu) struct Reaching {
+    /// Point lights whose range reaches it.
+    lamps: Vec<u32>,
+    /// Spheres that may be in the way of its surrounding light.
+    blockers: Vec<u32>,
+}
+
 /// All lights, scaled by the exposure.
 pub(in crate::engine::cpu) struct Lighting<'a> {
     /// Unit direction towards the sun and its colour.
     sun: Option<([f32; 3], [f32; 3])>,
     shadow: Option<SunShadow<'a>>,
     points: Vec<Point>,
+    blockers: Vec<Sphere>,
     sky: [f32; 3],
     ground: [f32; 3],
     /// World +Y in view space.
@@ -81,12 +115,9 @@ pub(in crate::engine::cpu) struct Lighting<'a> {
 }
 
 impl<'a> Lighting<'a> {
-    pub(in crate::engine::cpu) fn new(
-        lights: &'a Lights,
-        exposure: f32,
-        view_from_world: &[[f32; 4]; 3],
-        shadow: Option<SunShadow<'a>>,
-    ) -> Self {
+    pub(in crate::engine::cpu) fn new(list: &'a DrawList, shadow: Option<SunShadow<'a>>) -> Self {
+        let (lights, exposure, view_from_world) =
+            (&list.lights, list.exposure, &list.view.view_from_world);
         let exposed = |c: [f32; 3]| c.map(|v| v * exposure);
         Self {
             sun: lights.sun.map(|sun| (unit(sun.direction_to_sun), exposed(sun.color_lux))),
@@ -102,6 +133,7 @@ impl<'a> Lighting<'a> {
                     per_radius_m: 1.0 / p.radius_m.max(1e-6),
                 })
                 .collect(),
+            blockers: list.blockers.iter().map(Sphere::new).collect(),
             sky: exposed(lights.sky_lux),
             ground: exposed(lights.ground_lux),
             up: view_from_world.map(|row| row[1]),
@@ -114,23 +146,23 @@ impl<'a> Lighting<'a> {
         self.environment.as_ref()
     }
 
-    /// Names the point lights whose range reaches a view-space box.
+    /// Names what reaches a view-space box.
     pub(in crate::engine::cpu) fn reaching(
         &self,
         low: [f32; 3],
         high: [f32; 3],
-        out: &mut Vec<u32>,
+        out: &mut Reaching,
     ) {
-        out.clear();
-        for (index, light) in self.points.iter().enumerate() {
-            let distance2: f32 = (0..3)
-                .map(|i| (low[i] - light.position[i]).max(light.position[i] - high[i]).max(0.0))
-                .map(|d| d * d)
-                .sum();
-            if distance2 < light.range_m2 {
-                out.push(index as u32);
-            }
-        }
+        let distance2 = |p: &[f32; 3]| -> f32 {
+            (0..3).map(|i| (low[i] - p[i]).max(p[i] - high[i]).max(0.0)).map(|d| d * d).sum()
+        };
+        out.lamps.clear();
+        let lamps = self.points.iter().zip(0..);
+        out.lamps.extend(lamps.filter(|l| distance2(&l.0.position) < l.0.range_m2).map(|l| l.1));
+        out.blockers.clear();
+        let blockers = self.blockers.iter().zip(0..);
+        out.blockers
+            .extend(blockers.filter(|b| distance2(&b.0.center) < b.0.reach_m2).map(|b| b.1));
     }
 
     /// Light that fragments send to the camera, times the exposure.
@@ -140,7 +172,7 @@ impl<'a> Lighting<'a> {
         points: &[Points<AVX2>],
         looks: &[Look<AVX2>],
         (metallic, wrap): (f32, f32),
-        reaching: &[u32],
+        (reaching, own): (&Reaching, &Range<u32>),
         out: &mut [Vec3x8<AVX2>],
     ) {
         let mut reflectors = [Reflector::ZERO; GROUPS];
@@ -150,6 +182,12 @@ impl<'a> Lighting<'a> {
             *reflector = Reflector::new(points[group].position, look, metallic);
             out[group] = self.surrounding(reflector, look.roughness);
         }
+        if !reaching.blockers.is_empty() {
+            for (reflector, out) in reflectors.iter().zip(out.iter_mut()) {
+                *out = out.scale(self.unblocked(reflector, &reaching.blockers, own));
+            }
+        }
+        let reaching = &reaching.lamps[..];
         let wrap = Wrap { by: wrap, scale: 1.0 / ((1.0 + wrap) * (1.0 + wrap)) };
         if metallic > 0.0 {
             self.add_lights::<AVX2, true>(points, reflectors, (wrap, reaching), out);
@@ -251,6 +289,34 @@ impl<'a> Lighting<'a> {
         let again = (single * mean).scale(lost) / (one - mean.scale(lost));
         let matt = r.diffuse * (one - single - again) + again.scale(F32x8::splat(1.0 / PI));
         mirrored * single + irradiance * matt
+    }
+
+    /// Share of surrounding light that the spheres among some let through; `own` are the object's.
+    #[inline(always)]
+    fn unblocked<const AVX2: bool>(
+        &self,
+        r: &Reflector<AVX2>,
+        among: &[u32],
+        own: &Range<u32>,
+    ) -> F32x8<AVX2> {
+        let s = F32x8::splat;
+        let mut open = F32x8::ONE;
+        for index in among {
+            let sphere = &self.blockers[*index as usize];
+            let way = Vec3x8::splat(sphere.center) - r.position;
+            let distance2 = way.dot(way).max(s(1e-12));
+            let far = distance2 * s(sphere.per_reach_m2);
+            if !F32x8::ONE.gt(far).any() {
+                continue;
+            }
+            let bias = if own.contains(index) { Blocker::OWN_BIAS } else { 0.0 };
+            let cosine = r.normal.dot(way) * (F32x8::ONE / distance2.sqrt());
+            let faces = (cosine - s(bias)).max(F32x8::ZERO) * s(1.0 / (1.0 - bias));
+            let share = (s(sphere.radius_m2) / distance2).min(F32x8::ONE);
+            let window = (F32x8::ONE - far * far).max(F32x8::ZERO);
+            open = open * (F32x8::ONE - faces * share * (window * window));
+        }
+        open
     }
 
     /// Irradiance of surfaces that face so far upwards, -1..1.

@@ -10,6 +10,8 @@ mod material;
 mod surface;
 mod texture;
 
+use std::ops::Range;
+
 use super::develop::Develop;
 use super::fragment::Bucket;
 use super::samples::TILE;
@@ -18,7 +20,7 @@ use super::simd::{F32x8, LANES, Vec3x8, kernel};
 use self::material::Look;
 use self::surface::{Points, RaysThrough};
 
-pub(super) use light::Lighting;
+pub(super) use light::{Lighting, Reaching};
 pub(super) use material::Surface;
 pub(super) use surface::{Geometry, LensRays, Rays};
 
@@ -46,6 +48,8 @@ pub(super) struct DrawnSurface<'a> {
     pub(super) double_sided: bool,
     /// The object's transform turns triangles inside out.
     pub(super) mirrored: bool,
+    /// The object's own spheres.
+    pub(super) blockers: &'a Range<u32>,
 }
 
 kernel! {
@@ -55,7 +59,7 @@ kernel! {
         stage: &Stage<'_>,
         drawn: DrawnSurface<'_>,
         rays: Option<&[[f32; TILE * TILE]; 6]>,
-        reaching: &[u32],
+        reaching: &Reaching,
         fragments: &Bucket,
         color: &mut TileColor,
     ) = shade_body
@@ -66,7 +70,7 @@ fn shade_body<const AVX2: bool, const LENS: bool>(
     stage: &Stage<'_>,
     drawn: DrawnSurface<'_>,
     rays: Option<&[[f32; TILE * TILE]; 6]>,
-    reaching: &[u32],
+    reaching: &Reaching,
     fragments: &Bucket,
     color: &mut TileColor,
 ) {
@@ -93,7 +97,8 @@ fn shade_body<const AVX2: bool, const LENS: bool>(
         }
         let (points, looks, light) = (&points[..count], &mut looks[..count], &mut light[..count]);
         surface.look(points, looks);
-        stage.lighting.reflected(points, looks, (surface.metallic, surface.wrap), reaching, light);
+        let (body, near) = ((surface.metallic, surface.wrap), (reaching, drawn.blockers));
+        stage.lighting.reflected(points, looks, body, near, light);
         for (group, light) in light.iter().enumerate() {
             let first = (first + group) * LANES;
             let at = [F32x8::load(&fragments.x[first..]), F32x8::load(&fragments.y[first..])];

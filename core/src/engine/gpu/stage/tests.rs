@@ -8,6 +8,7 @@ use wgpu::naga::valid::{Capabilities, ValidationFlags, Validator};
 use wgpu::naga::{AddressSpace, Module, StorageAccess, TypeInner};
 
 use super::*;
+use crate::draw::abi::MAX_BLOCKERS;
 use crate::engine::gpu::abi;
 
 fn modules() -> impl Iterator<Item = (String, Stage, Module)> {
@@ -105,8 +106,8 @@ fn shared_structs_are_laid_out_alike() {
             tone_curve,
             has_environment,
             environment_unit,
+            blocker_count,
             pad5,
-            pad6,
             environment_from_view,
             environment_levels,
             environment_irradiance,
@@ -158,9 +159,9 @@ fn shared_structs_are_laid_out_alike() {
             map_info,
             object,
             pad0,
-            pad1,
-            pad2,
+            own_blockers,
         }),
+        layout!(Blocker { center, radius_m }),
         layout!(Light { position, per_range_m2, color_cd, per_radius_m }),
         layout!(ObjectSums { count, low, high }),
     ];
@@ -194,6 +195,7 @@ fn shared_constants_are_the_same() {
         ("BATCHES_ACROSS: u32 = ", abi::BATCHES_ACROSS),
         ("LARGE_ROOM: u32 = ", abi::LARGE_ROOM),
         ("MAX_LAMPS: u32 = ", abi::MAX_LAMPS),
+        ("MAX_BLOCKERS: u32 = ", MAX_BLOCKERS as u32),
         ("TILE_LOG2: u32 = ", abi::TILE.ilog2()),
     ] {
         assert!(text.contains(&format!("const {name}{value}u;")), "{name}");
