@@ -112,6 +112,7 @@ impl FrameMaker for Painter {
                 jpeg_quality: None,
             },
             picture: Some((0..width * height).flat_map(color).collect()),
+            skipped: vec![],
             annotations: Annotations {
                 frame,
                 width,

@@ -157,6 +157,7 @@ fn summary_json(summary: &Summary, out: &Path) -> Value {
         "out": out.display().to_string(),
         "done": report.done.len(),
         "failed": report.failed,
+        "skipped_assets": report.skipped,
         "interrupted": report.interrupted,
         "wall_s": summary.wall.as_secs_f64(),
         "workers": summary.workers,
@@ -199,6 +200,16 @@ fn summary_text(summary: &Summary, out: &Path) -> String {
             out.join("report.json").display()
         );
     }
+    for skipped in report.skipped.iter().take(SHOWN) {
+        text += &format!("\nskipped {}: {}", skipped.id, skipped.reason);
+    }
+    if report.skipped.len() > SHOWN {
+        text += &format!(
+            "\nall {} skipped pictures are listed in {}",
+            report.skipped.len(),
+            out.join("report.json").display()
+        );
+    }
     if report.interrupted {
         let missing = report.asked.len() as u64 - done - report.failed.len() as u64;
         text += &format!(
@@ -211,7 +222,7 @@ fn summary_text(summary: &Summary, out: &Path) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use figurant_core::export::{FailedFrame, Report};
+    use figurant_core::export::{FailedFrame, Report, SkippedAsset};
 
     #[test]
     fn durations_show_two_units() {
@@ -227,6 +238,7 @@ mod tests {
             asked: 0..20,
             done: (0..10).collect(),
             failed: (10..17).map(failed).collect(),
+            skipped: [SkippedAsset { id: "a.png".to_owned(), reason: "cut".to_owned() }].into(),
             interrupted: true,
         };
         let mut times = StageTimes::default();
@@ -239,6 +251,7 @@ mod tests {
             "frame 10 failed: no people",
             "and 2 more",
             "all 7 failed frames",
+            "skipped a.png: cut",
             "3 frames were not begun",
         ] {
             assert!(text.contains(part), "{part}\n{text}");

@@ -27,7 +27,7 @@ impl Loaded {
     /// The document's asset folders, as paths from here.
     #[must_use]
     pub fn asset_folders(&self) -> Vec<PathBuf> {
-        self.document.assets.iter().map(|a| self.folder.join(a)).collect()
+        self.document.assets.folders.iter().map(|a| self.folder.join(a)).collect()
     }
 }
 
@@ -227,7 +227,7 @@ mod tests {
         let mut document = Document { name: "Zoë \"1\"".to_owned(), ..Document::default() };
         document.seed = u64::MAX;
         document.quality.lod_error_px = 0.1 + 0.2;
-        document.assets = vec!["textures".to_owned(), "/abs".to_owned()];
+        document.assets.folders = vec!["textures".to_owned(), "/abs".to_owned()];
         save(&document, &path).unwrap();
         save(&document, &path).unwrap();
         let loaded = load(&path).unwrap();

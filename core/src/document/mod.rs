@@ -14,6 +14,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+mod assets;
 mod camera;
 pub mod cast;
 pub mod check;
@@ -35,6 +36,7 @@ mod validate;
 mod vector;
 mod wardrobe;
 
+pub use assets::{Assets, OnError};
 pub use camera::{Brown, Camera, Distortion, Fisheye, Image};
 pub use face::{Expression, ExpressionKind};
 pub use lights::{
@@ -77,9 +79,9 @@ pub struct Document {
     pub seed: u64,
     /// How many frames there are.
     pub frames: u32,
-    /// Folders of JPEG and PNG textures, of pose files and of files of people; relative ones start
-    /// at the config's own folder.
-    pub assets: Vec<String>,
+    /// Folders of JPEG and PNG textures, of .hdr and .exr surroundings, of pose files and of files of
+    /// people.
+    pub assets: Assets,
     /// The picture's size.
     pub image: Image,
     /// The camera.
@@ -111,7 +113,7 @@ impl Default for Document {
             name: String::new(),
             seed: 539_662_031,
             frames: 100,
-            assets: Vec::new(),
+            assets: Assets::default(),
             image: Image::default(),
             camera: Camera::default(),
             lights: Lights::default(),

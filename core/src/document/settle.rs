@@ -191,7 +191,7 @@ pub(in crate::document) mod tests {
         assert_eq!(document.people.body.age_years, expected);
         let mut rest = document.clone();
         rest.people.body.age_years = Document::default().people.body.age_years;
-        rest.assets.clear();
+        rest.assets.folders.clear();
         assert_eq!(rest, Document::default());
         let [source] = sources.as_slice() else { panic!("{sources:?}") };
         assert_eq!((source.name.as_str(), source.kind), ("ages.csv", SourceKind::Numbers));

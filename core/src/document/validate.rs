@@ -71,7 +71,7 @@ fn sections(document: &Document) -> Check {
         c.report("version", format!("must be {VERSION}, got {}", d.version));
     }
     c.count("frames", d.frames, 1, MAX_FRAMES);
-    for (i, folder) in d.assets.iter().enumerate() {
+    for (i, folder) in d.assets.folders.iter().enumerate() {
         if folder.trim().is_empty() {
             c.report(&format!("assets[{i}]"), "must name a folder, got an empty text");
         }

@@ -31,7 +31,7 @@ pub use frame_set::FrameSet;
 pub use layout::{FrameFile, Layout};
 pub use manifest::{AssetLicence, DatasetInfo, FORMAT_VERSION, Identity};
 pub use picture::PictureFormat;
-pub use report::{FailedFrame, Report};
+pub use report::{FailedFrame, Report, SkippedAsset};
 
 /// JSON to be read by people too, with a line feed at the end.
 fn pretty_json(value: &impl Serialize) -> Vec<u8> {

@@ -1,5 +1,6 @@
 //! `report.json`: which frames are missing, and why.
 
+use std::collections::BTreeSet;
 use std::ops::Range;
 
 use serde::Serialize;
@@ -15,6 +16,15 @@ pub struct FailedFrame {
     pub reason: String,
 }
 
+/// A picture that could not be used, and in whose place another one stands.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+pub struct SkippedAsset {
+    /// Its id.
+    pub id: String,
+    /// What is wrong with it.
+    pub reason: String,
+}
+
 /// How an export went. It holds no times, so that equal runs give equal files.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Report {
@@ -24,6 +34,8 @@ pub struct Report {
     pub done: FrameSet,
     /// The frames that are not, for they went wrong.
     pub failed: Vec<FailedFrame>,
+    /// Pictures that were passed over.
+    pub skipped: BTreeSet<SkippedAsset>,
     /// Whether the run was stopped before it came to all frames.
     pub interrupted: bool,
 }
@@ -34,6 +46,8 @@ struct File<'a> {
     frames_done: u64,
     interrupted: bool,
     failed: Vec<&'a FailedFrame>,
+    #[serde(skip_serializing_if = "BTreeSet::is_empty")]
+    skipped_assets: &'a BTreeSet<SkippedAsset>,
 }
 
 impl Report {
@@ -52,6 +66,7 @@ impl Report {
             frames_done: self.done.len(),
             interrupted: self.interrupted,
             failed,
+            skipped_assets: &self.skipped,
         })
     }
 }

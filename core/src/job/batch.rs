@@ -16,7 +16,7 @@ use std::time::{Duration, Instant};
 
 use super::progress::{Meter, Progress};
 use super::{FrameMaker, RenderedFrame};
-use crate::export::{Dataset, ExportError, FailedFrame, Report, StagedFrame};
+use crate::export::{Dataset, ExportError, FailedFrame, Report, SkippedAsset, StagedFrame};
 use crate::plan::StageTimes;
 
 /// What a batch is to do.
@@ -66,7 +66,7 @@ pub enum BatchError<E: std::error::Error> {
 
 /// What workers hand to the calling thread.
 enum Message<E> {
-    Made(u32, StagedFrame),
+    Made(u32, StagedFrame, Vec<SkippedAsset>),
     Failed(FailedFrame),
     Storage(ExportError),
     NoMaker(E),
@@ -188,7 +188,7 @@ impl<E: std::error::Error> Worker<'_, E> {
             }
         };
         Ok(match self.stage(&made, times) {
-            Ok(staged) => Message::Made(frame, staged),
+            Ok(staged) => Message::Made(frame, staged, made.skipped),
             Err(e) if e.is_storage() => Message::Storage(e),
             Err(e) => failed(chain(&e)),
         })
@@ -256,10 +256,11 @@ impl<'a, E: std::error::Error> Clerk<'a, E> {
     fn serve(&mut self, messages: &Receiver<Message<E>>, give_up: &AtomicBool) {
         while let Ok(message) = self.times.measure("wait for frames", || messages.recv()) {
             match message {
-                Message::Made(frame, staged) if self.storage.is_none() => {
+                Message::Made(frame, staged, skipped) if self.storage.is_none() => {
                     match self.times.measure("sync and rename", || staged.commit()) {
                         Ok(()) => {
                             self.report.done.insert(frame);
+                            self.report.skipped.extend(skipped);
                             self.tell(frame, true);
                         }
                         Err(e) => self.storage = Some(e),
@@ -354,6 +355,7 @@ mod tests {
                 scene: sample::scene(frame),
                 picture: Some(sample::picture(frame)),
                 annotations: sample::labels(frame, (frame % 5) as u16),
+                skipped: Vec::new(),
                 times,
             })
         }

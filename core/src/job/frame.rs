@@ -8,15 +8,16 @@ use std::sync::Arc;
 
 use glam::{DQuat, DVec3};
 
+use super::substitute::substitute;
 use super::{FrameMaker, RenderedFrame};
-use crate::document::{Document, Problem};
+use crate::document::{Document, OnError, Problem};
 use crate::draw::{self, Cast, DrawError, DrawOptions, Drawn};
 use crate::engine::{Engine, EngineError};
 use crate::label;
 use crate::library::Library;
-use crate::library::textures::TextureGroup;
 use crate::library::clip::Clip;
 use crate::library::pose::Pose;
+use crate::library::textures::TextureGroup;
 use crate::plan::{Delivery, Frame, Outputs, Pass, PassPlan, SceneFacts, StageTimes};
 use crate::sampling::{self, Activity, Catalogue, SampleError, Sampler};
 use crate::scene::{Camera, Scene};
@@ -190,13 +191,15 @@ impl Studio {
         if let Some(Viewpoint { position_m, rotation, fov_vertical_deg }) = view.viewpoint {
             scene.camera = Camera { position_m, rotation, fov_vertical_deg, ..scene.camera };
         }
+        let skips = self.sampler.document().assets.on_error == OnError::Skip;
+        let skipped = if skips { substitute(&mut scene, &self.library) } else { Vec::new() };
         let plan = self.plan(&scene).delivered(view.delivery);
         let (drawn, mut rendered) = self.render(&scene, &plan, &mut times)?;
         let annotations =
             times.measure("label", || label::annotate(&scene, &drawn, &rendered, &self.outputs));
         let picture = rendered.picture.take();
         self.engine.recycle(rendered);
-        Ok(RenderedFrame { scene, picture, annotations, times })
+        Ok(RenderedFrame { scene, picture, annotations, skipped, times })
     }
 }
 

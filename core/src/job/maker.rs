@@ -1,5 +1,6 @@
 //! What makes frames, as a batch sees it.
 
+use crate::export::SkippedAsset;
 use crate::label::Annotations;
 use crate::plan::StageTimes;
 use crate::scene::Scene;
@@ -13,6 +14,8 @@ pub struct RenderedFrame {
     pub picture: Option<Vec<u8>>,
     /// Its labels.
     pub annotations: Annotations,
+    /// Pictures in whose place it shows others.
+    pub skipped: Vec<SkippedAsset>,
     /// Time spent by stage.
     pub times: StageTimes,
 }

@@ -8,6 +8,7 @@ pub mod frame;
 mod maker;
 pub mod progress;
 pub mod ranges;
+mod substitute;
 
 pub use frame::{FrameError, Studio, View, Viewpoint, catalogue};
 pub use maker::{FrameMaker, RenderedFrame};
