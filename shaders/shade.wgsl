@@ -104,7 +104,7 @@ fn main(
     let inside = id.x < raster_target.width && id.y < raster_target.band_height;
     let pixel = id.y * raster_target.width + id.x;
     let corner = vec2<f32>(f32(id.x), f32(id.y + raster_target.first_y));
-    if frame.blocker_count > 0u {
+    if HAS_BLOCKERS {
         var ray = vec2<f32>(0.0);
         if inside {
             ray = ray_through(corner + 0.5).xy;

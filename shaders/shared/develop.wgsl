@@ -65,10 +65,10 @@ fn developed(exposed: vec3<f32>, at: vec2<f32>) -> vec3<f32> {
     if frame.contrast > 0.0 {
         light = graded(light);
     }
-    if frame.tone_curve == 0u {
+    if TONE_CURVE == 0u {
         return aces(light);
     }
-    if frame.tone_curve == 1u {
+    if TONE_CURVE == 1u {
         return agx(light);
     }
     return clamp(light, vec3<f32>(0.0), vec3<f32>(1.0));

@@ -102,7 +102,7 @@ fn environment_mirrored(direction: vec3<f32>, roughness: f32) -> vec3<f32> {
 
 // Exposed light where nothing stands, at a position in the picture.
 fn backdrop(at: vec2<f32>) -> vec3<f32> {
-    if frame.has_environment == 0u {
+    if !HAS_ENVIRONMENT {
         return frame.background;
     }
     let direction = vec3<f32>(ray_through(at).xy, -1.0);

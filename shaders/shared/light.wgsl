@@ -92,7 +92,7 @@ fn surrounding(r: Reflector, roughness: f32) -> vec3<f32> {
     let both_ways = r.n_dot_v + r.n_dot_v;
     var irradiance: vec3<f32>;
     var mirrored: vec3<f32>;
-    if frame.has_environment != 0u {
+    if HAS_ENVIRONMENT {
         irradiance = environment_irradiance(r.normal);
         mirrored = environment_mirrored(r.normal * both_ways - r.to_viewer, roughness);
     } else {
@@ -137,10 +137,10 @@ fn reflected(
 ) -> vec3<f32> {
     let r = reflector(point.position, look, metallic, wrap);
     var sum = surrounding(r, look.roughness);
-    if frame.blocker_count > 0u {
+    if HAS_BLOCKERS {
         sum *= unblocked(r.position, r.normal, own_blockers);
     }
-    if frame.has_sun != 0u {
+    if HAS_SUN {
         let cosine = dot(r.normal, frame.to_sun);
         if cosine > -wrap {
             let shadow_cosine = dot(point.normal, frame.to_sun);

@@ -10,7 +10,7 @@ fn lit_at(x: u32, y: u32, depth: f32) -> f32 {
 // The share of the sun's light, 0..1, that reaches a point with this normal. The offset covers
 // the change of depth over the filter's width on a plane of any slope.
 fn sunlit(p: vec3<f32>, n: vec3<f32>, n_dot_l: f32, extra_m: f32) -> f32 {
-    if frame.has_shadow == 0u || sun_view.present == 0u {
+    if !HAS_SHADOW || sun_view.present == 0u {
         return 1.0;
     }
     let texel_m = sun_view.texel_m;

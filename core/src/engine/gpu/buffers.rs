@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use super::device::Device;
 use super::stage::{Access, Resource, Stage};
+use super::variant::Variant;
 use crate::engine::EngineError;
 
 /// Bytes that no buffer is smaller than, enough for one record of any kind.
@@ -13,7 +14,7 @@ const LEAST: u64 = 1024;
 #[derive(Default)]
 pub struct Buffers {
     buffers: BTreeMap<Resource, wgpu::Buffer>,
-    groups: BTreeMap<(Stage, u32), wgpu::BindGroup>,
+    groups: BTreeMap<(Stage, Variant), wgpu::BindGroup>,
 }
 
 impl Buffers {
@@ -73,10 +74,15 @@ impl Buffers {
     }
 
     /// The bind group of a stage.
-    pub fn group(&mut self, device: &mut Device, stage: Stage, samples: u32) -> &wgpu::BindGroup {
-        let samples = if stage.by_samples() { samples } else { 1 };
+    pub fn group(
+        &mut self,
+        device: &mut Device,
+        stage: Stage,
+        variant: Variant,
+    ) -> &wgpu::BindGroup {
+        let variant = variant.of(stage);
         let buffers = &self.buffers;
-        self.groups.entry((stage, samples)).or_insert_with(|| {
+        self.groups.entry((stage, variant)).or_insert_with(|| {
             let entries: Vec<_> = (0..)
                 .zip(stage.bindings())
                 .map(|(binding, (resource, _))| wgpu::BindGroupEntry {
@@ -84,7 +90,7 @@ impl Buffers {
                     resource: buffers[resource].as_entire_binding(),
                 })
                 .collect();
-            let layout = device.pipeline(stage, samples).get_bind_group_layout(0);
+            let layout = device.pipeline(stage, variant).get_bind_group_layout(0);
             device.device.create_bind_group(&wgpu::BindGroupDescriptor {
                 label: Some(stage.name()),
                 layout: &layout,

@@ -7,6 +7,7 @@ use super::adapter::{self, GpuError, GpuOptions};
 use super::present::GpuContext;
 use super::reload::{ShaderFolder, Sources};
 use super::stage::{Access, Stage};
+use super::variant::Variant;
 use crate::engine::EngineError;
 
 /// What a driver told us out of turn.
@@ -32,7 +33,7 @@ pub struct Device {
     sources: Arc<Sources>,
     /// What was last looked at; other than `sources` where the device refused it.
     seen: Arc<Sources>,
-    pipelines: BTreeMap<(Stage, u32), wgpu::ComputePipeline>,
+    pipelines: BTreeMap<(Stage, Variant), wgpu::ComputePipeline>,
 }
 
 impl Device {
@@ -104,17 +105,17 @@ impl Device {
         self.limits.max_storage_buffer_binding_size.min(self.limits.max_buffer_size)
     }
 
-    /// The pipeline of a stage for so many samples a pixel; compiled when first asked for.
-    pub fn pipeline(&mut self, stage: Stage, samples: u32) -> &wgpu::ComputePipeline {
-        let samples = if stage.by_samples() { samples } else { 1 };
+    /// The pipeline of a stage in a form; compiled when first asked for.
+    pub fn pipeline(&mut self, stage: Stage, variant: Variant) -> &wgpu::ComputePipeline {
+        let variant = variant.of(stage);
         let (device, sources, folder) = (&self.device, &self.sources, &self.folder);
-        self.pipelines.entry((stage, samples)).or_insert_with(|| {
+        self.pipelines.entry((stage, variant)).or_insert_with(|| {
             let Some(folder) = folder.as_ref().filter(|_| !sources.are_own()) else {
-                return compile(device, stage, samples, sources);
+                return compile(device, stage, variant, sources);
             };
-            try_compile(device, stage, samples, sources).unwrap_or_else(|reason| {
+            try_compile(device, stage, variant, sources).unwrap_or_else(|reason| {
                 folder.refused(stage, &reason);
-                compile(device, stage, samples, &Sources::default())
+                compile(device, stage, variant, &Sources::default())
             })
         })
     }
@@ -129,12 +130,12 @@ impl Device {
         }
         self.seen = Arc::clone(&sources);
         let mut remade = BTreeMap::new();
-        for &(stage, samples) in self.pipelines.keys() {
-            if stage.source(samples, &sources) == stage.source(samples, &self.sources) {
+        for &(stage, variant) in self.pipelines.keys() {
+            if stage.source(variant, &sources) == stage.source(variant, &self.sources) {
                 continue;
             }
-            match try_compile(&self.device, stage, samples, &sources) {
-                Ok(pipeline) => remade.insert((stage, samples), pipeline),
+            match try_compile(&self.device, stage, variant, &sources) {
+                Ok(pipeline) => remade.insert((stage, variant), pipeline),
                 Err(reason) => {
                     folder.refused(stage, &reason);
                     return false;
@@ -170,12 +171,12 @@ fn watch(device: &wgpu::Device, faults: &Arc<Mutex<Faults>>) {
 fn try_compile(
     device: &wgpu::Device,
     stage: Stage,
-    samples: u32,
+    variant: Variant,
     sources: &Sources,
 ) -> Result<wgpu::ComputePipeline, String> {
     let invalid = device.push_error_scope(wgpu::ErrorFilter::Validation);
     let internal = device.push_error_scope(wgpu::ErrorFilter::Internal);
-    let pipeline = compile(device, stage, samples, sources);
+    let pipeline = compile(device, stage, variant, sources);
     let errors = [adapter::block_on(internal.pop()), adapter::block_on(invalid.pop())];
     match errors.into_iter().flatten().next() {
         Some(error) => Err(error.to_string()),
@@ -186,11 +187,11 @@ fn try_compile(
 fn compile(
     device: &wgpu::Device,
     stage: Stage,
-    samples: u32,
+    variant: Variant,
     sources: &Sources,
 ) -> wgpu::ComputePipeline {
-    let label = format!("{stage:?} {samples}");
-    let module = module(device, stage, samples, sources, &label);
+    let label = format!("{stage:?} {variant:?}");
+    let module = module(device, stage, variant, sources, &label);
     let entries: Vec<_> = (0..)
         .zip(stage.bindings())
         .map(|(binding, (_, access))| wgpu::BindGroupLayoutEntry {
@@ -230,13 +231,13 @@ fn compile(
 fn module(
     device: &wgpu::Device,
     stage: Stage,
-    samples: u32,
+    variant: Variant,
     sources: &Sources,
     label: &str,
 ) -> wgpu::ShaderModule {
     let descriptor = wgpu::ShaderModuleDescriptor {
         label: Some(label),
-        source: wgpu::ShaderSource::Wgsl(stage.source(samples, sources).into()),
+        source: wgpu::ShaderSource::Wgsl(stage.source(variant, sources).into()),
     };
     if !sources.are_own() {
         return device.create_shader_module(descriptor);

@@ -40,6 +40,7 @@ mod readback;
 mod record;
 mod reload;
 mod stage;
+mod variant;
 
 pub use adapter::{AdapterReport, GpuError, GpuOptions, adapters, choice};
 pub use present::{GpuContext, GpuPicture, GpuPictures};
@@ -59,6 +60,7 @@ use self::present::Presenter;
 use self::readback::{Band, Counted, Readback};
 use self::record::{Clock, Recorder};
 use self::stage::{Resource, Stage};
+use self::variant::{Light, Variant};
 use super::{Engine, EngineError, input, resized};
 use crate::draw::DrawList;
 use crate::draw::abi::MAX_BLOCKERS;
@@ -488,7 +490,7 @@ impl State {
             buffers: &mut self.buffers,
             clock: self.clock.as_mut(),
             encoder: &mut encoder,
-            samples: list.samples,
+            variant: Variant { samples: list.samples, light: Light::of(&self.packed.frame) },
             lens: list.lens.is_some(),
             target: &target,
             triangles: self.packed.triangles[0],

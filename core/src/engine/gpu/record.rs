@@ -5,7 +5,8 @@ use std::time::Duration;
 use super::abi::{BATCHES_ACROSS, SunView, TILE, Target};
 use super::buffers::Buffers;
 use super::device::Device;
-use super::stage::{Resource, Stage, pixels_of_lane};
+use super::stage::{Resource, Stage};
+use super::variant::{Variant, pixels_of_lane};
 use crate::plan::{Pass, PassPlan, StageTimes};
 
 /// What the device's clock says at the start and end of each stage.
@@ -56,7 +57,7 @@ pub struct Recorder<'a> {
     pub buffers: &'a mut Buffers,
     pub clock: Option<&'a mut Clock>,
     pub encoder: &'a mut wgpu::CommandEncoder,
-    pub samples: u32,
+    pub variant: Variant,
     /// Whether the picture lies behind a lens.
     pub lens: bool,
     pub target: &'a Target,
@@ -129,7 +130,7 @@ impl Recorder<'_> {
         self.run(Stage::Scan, [1; 3]);
         self.run(Stage::Scatter, walkers);
         let [columns, rows] = self.target.tiles;
-        self.run(Stage::Raster, [columns.div_ceil(pixels_of_lane(self.samples)), rows, 1]);
+        self.run(Stage::Raster, [columns.div_ceil(pixels_of_lane(self.variant.samples)), rows, 1]);
     }
 
     /// Makes what the plan asks for from the samples.
@@ -162,13 +163,13 @@ impl Recorder<'_> {
                 end_of_pass_write_index: Some(first + 1),
             }
         });
-        let group = self.buffers.group(self.device, stage, self.samples);
+        let group = self.buffers.group(self.device, stage, self.variant);
         let mut pass = self.encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
             label: Some(stage.name()),
             timestamp_writes,
         });
         pass.set_bind_group(0, group, &[]);
-        pass.set_pipeline(self.device.pipeline(stage, self.samples));
+        pass.set_pipeline(self.device.pipeline(stage, self.variant));
         let [x, y, z] = groups;
         pass.dispatch_workgroups(x, y, z);
     }

@@ -16,9 +16,7 @@ use wgpu::naga::front::wgsl;
 use wgpu::naga::valid::{Capabilities, ValidationFlags, Validator};
 
 use super::stage::{File, Stage};
-
-/// Numbers of samples a pixel of which there are variants.
-const SAMPLES: [u32; 3] = [1, 4, 16];
+use super::variant::Variant;
 
 /// What is wrong with a shader of a folder.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -136,19 +134,24 @@ impl ShaderFolder {
             return Err(ShaderProblem { file: self.path().to_owned(), line: None, message });
         }
         let sources = Sources { changed };
-        for (stage, samples) in variants() {
-            if stage.source(samples, &sources) != stage.source(samples, good) {
-                self.check(stage, samples, &sources)?;
+        for (stage, variant) in variants() {
+            if stage.source(variant, &sources) != stage.source(variant, good) {
+                self.check(stage, variant, &sources)?;
             }
         }
         Ok(sources)
     }
 
     /// Checks a shader without a device.
-    fn check(&self, stage: Stage, samples: u32, sources: &Sources) -> Result<(), ShaderProblem> {
-        let source = stage.source(samples, sources);
+    fn check(
+        &self,
+        stage: Stage,
+        variant: Variant,
+        sources: &Sources,
+    ) -> Result<(), ShaderProblem> {
+        let source = stage.source(variant, sources);
         let problem = |line: Option<u32>, message: String| {
-            let place = line.and_then(|line| stage.place(samples, sources, line));
+            let place = line.and_then(|line| stage.place(variant, sources, line));
             let (name, line) = place.map_or((stage.name_of_file(), None), |(n, l)| (n, Some(l)));
             ShaderProblem { file: self.path().join(name), line, message }
         };
@@ -220,11 +223,8 @@ fn files() -> impl Iterator<Item = File> {
 }
 
 /// All shaders in all their variants.
-fn variants() -> impl Iterator<Item = (Stage, u32)> {
-    Stage::ALL.into_iter().flat_map(|stage| {
-        let count = if stage.by_samples() { SAMPLES.len() } else { 1 };
-        SAMPLES[..count].iter().map(move |samples| (stage, *samples))
-    })
+fn variants() -> impl Iterator<Item = (Stage, Variant)> {
+    Stage::ALL.into_iter().flat_map(|stage| Variant::all(stage).map(move |v| (stage, v)))
 }
 
 fn stamp(path: &Path) -> Stamp {
@@ -247,6 +247,10 @@ fn chain(error: &dyn Error) -> String {
 mod tests {
     use super::*;
     use std::sync::mpsc::{Receiver, channel};
+
+    fn some(stage: Stage) -> Variant {
+        Variant::all(stage).last().unwrap()
+    }
 
     /// A folder with every file of the program, and what is told of it.
     fn folder() -> (tempfile::TempDir, ShaderFolder, Receiver<ShaderProblem>) {
@@ -278,7 +282,7 @@ mod tests {
         write(&folder, "shared/edge.wgsl", &good);
         let taken = folder.sources();
         assert!(!taken.are_own());
-        assert!(Stage::Raster.source(4, &taken).contains("// Another."));
+        assert!(Stage::Raster.source(some(Stage::Raster), &taken).contains("// Another."));
         assert!(Arc::ptr_eq(&taken, &folder.sources()), "nothing has changed since");
         std::fs::remove_file(folder.path().join("shared/edge.wgsl")).unwrap();
         assert!(folder.sources().are_own(), "what is not there is the program's own");

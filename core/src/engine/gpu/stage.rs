@@ -93,7 +93,7 @@ pub enum Stage {
 }
 
 use super::reload::Sources;
-use crate::engine::pattern;
+use super::variant::Variant;
 use Access::{Read, Uniform, Write};
 use Resource as R;
 
@@ -343,9 +343,9 @@ impl Stage {
         }
     }
 
-    /// The whole text of its shader, for so many samples a pixel where that matters.
-    pub fn source(self, samples: u32, sources: &Sources) -> String {
-        let mut text = self.constants(samples);
+    /// The whole text of its shader in a form.
+    pub fn source(self, variant: Variant, sources: &Sources) -> String {
+        let mut text = variant.of(self).constants();
         for file in self.files() {
             text += sources.text(*file);
             text.push('\n');
@@ -355,9 +355,15 @@ impl Stage {
 
     /// The file and its line where a line of the whole text stands, both from 1; nothing where no
     /// file holds it.
-    pub fn place(self, samples: u32, sources: &Sources, line: u32) -> Option<(&'static str, u32)> {
+    pub fn place(
+        self,
+        variant: Variant,
+        sources: &Sources,
+        line: u32,
+    ) -> Option<(&'static str, u32)> {
         let breaks = |text: &str| text.matches('\n').count() as u32;
-        let mut line = line.checked_sub(breaks(&self.constants(samples))).filter(|l| *l > 0)?;
+        let mut line =
+            line.checked_sub(breaks(&variant.of(self).constants())).filter(|l| *l > 0)?;
         for file in self.files() {
             let lines = breaks(sources.text(*file)) + 1;
             if line <= lines {
@@ -371,10 +377,6 @@ impl Stage {
     /// The name of the file that no other stage's shader is about.
     pub fn name_of_file(self) -> &'static str {
         self.files().last().map_or("", |file| file.0)
-    }
-
-    fn constants(self, samples: u32) -> String {
-        constants(if self.by_samples() { samples } else { 1 })
     }
 
     /// Its files, each after those that it needs.
@@ -445,35 +447,6 @@ const TRIANGLE: File = file!("shared/triangle.wgsl");
 const EDGE: File = file!("shared/edge.wgsl");
 const KEPT: File = file!("shared/kept.wgsl");
 const RASTER: File = file!("shared/raster.wgsl");
-
-/// Pixels of a tile of 64 that one invocation of `raster` owns: as many as its registers hold the
-/// samples of.
-pub const fn pixels_of_lane(samples: u32) -> u32 {
-    match samples {
-        1 => 8,
-        4 => 2,
-        _ => 1,
-    }
-}
-
-/// What differs between the variants of a shader.
-fn constants(samples: u32) -> String {
-    let positions: Vec<String> =
-        pattern::positions(samples).iter().map(|[x, y]| format!("vec2<i32>({x}, {y})")).collect();
-    // With one sample a pixel, positions are whole pixels from its middle, else sixteenths.
-    let (grid_log2, corner) = if samples == 1 { (10, 8) } else { (6, 0) };
-    let pixels = pixels_of_lane(samples);
-    format!(
-        "const SAMPLES: u32 = {samples}u;\n\
-         const POSITIONS = array<vec2<i32>, {samples}>({});\n\
-         const GRID_LOG2: u32 = {grid_log2}u;\n\
-         const GRID_PER_PX: i32 = {};\n\
-         const GRID_CORNER = vec2<i32>({corner}, {corner});\n\
-         const PIXELS: u32 = {pixels}u;\n",
-        positions.join(", "),
-        1 << (10 - grid_log2),
-    )
-}
 
 #[cfg(test)]
 mod tests;
