@@ -372,10 +372,13 @@ fn a_scenario_is_exported_in_one_step() {
     let desk = Desk::new(&json!({"frames": 2, "unityTag": 2}));
     let equals =
         format!("export --scenario-config-file={} --out @b", desk.path("c.json").display());
-    for (out, line) in [("a", "export --scenario-config-file @c.json --out @a"), ("b", &equals)] {
+    for (out, line) in
+        [("a", "export -logfile - --scenario-config-file @c.json --out @a"), ("b", &equals)]
+    {
         let ran = desk.run(line);
         assert_eq!(ran.exit, Exit::Done, "{line}: {}", ran.err);
-        assert!(ran.err.starts_with("note: unityTag: is left out\n"), "{line}: {}", ran.err);
+        assert!(ran.err.contains("note: unityTag: is left out\n"), "{line}: {}", ran.err);
+        assert_eq!(ran.err.starts_with("note: -logfile -: is a Unity player's"), out == "a");
         assert_eq!(desk.json(&format!("{out}/config.json")), json!({"frames": 2}));
         let manifest = desk.json(&format!("{out}/manifest.json"));
         assert_eq!(manifest["frames_done"], json!([[0, 2]]), "{line}");

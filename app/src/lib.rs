@@ -21,6 +21,7 @@ mod layout;
 pub mod overlay;
 #[cfg(feature = "gui")]
 mod panels;
+mod player;
 mod process;
 mod report;
 pub mod road;
@@ -34,6 +35,7 @@ mod theme;
 #[cfg(feature = "gui")]
 pub mod viewport;
 
+use commands::import;
 pub use console::Console;
 pub use exit::{Exit, Failure};
 pub use process::{Stop, main};
@@ -47,13 +49,17 @@ pub fn run<R: Road>(
     console: &mut Console<'_>,
     stop: &Stop,
 ) -> Exit {
-    let parsed = match args::Args::try_parse_from(args) {
+    let (words, players) = player::split(args.into_iter().collect());
+    let parsed = match args::Args::try_parse_from(words) {
         Ok(parsed) => parsed,
         Err(e) => return not_parsed(&e, console),
     };
     let ended = match parsed.command {
         None => commands::window::run(road, parsed.config.as_deref()),
-        Some(args::Command::Export(args)) => commands::export::run(road, &args, console, stop),
+        Some(args::Command::Export(args)) => {
+            import::show_notes(&players, args.progress, console);
+            commands::export::run(road, &args, console, stop)
+        }
         Some(args::Command::Frame(args)) => commands::frame::run(road, &args, console),
         Some(args::Command::Import(args)) => commands::import::run(road, &args, console),
         Some(args::Command::Gallery(args)) => commands::gallery::run(road, &args, console),
