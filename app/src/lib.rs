@@ -61,7 +61,7 @@ pub fn run<R: Road>(
             commands::export::run(road, &args, console, stop)
         }
         Some(args::Command::Frame(args)) => commands::frame::run(road, &args, console),
-        Some(args::Command::Import(args)) => commands::import::run(road, &args, console),
+        Some(args::Command::Import(args)) => import::run(road, &args, console),
         Some(args::Command::Gallery(args)) => commands::gallery::run(road, &args, console),
         Some(args::Command::People(args)) => commands::people::run(road, &args, console),
         Some(args::Command::Validate(args)) => commands::validate::run(road, &args, console),
