@@ -45,17 +45,18 @@ fn connected(a: vec2<u32>, b: vec2<u32>) -> bool {
 }
 
 // Display light of a fragment.
-fn fragment(slot: u32, at: vec2<f32>) -> vec3<f32> {
+fn fragment(slot: u32, at: vec2<f32>, pixel: vec2<u32>) -> vec3<f32> {
     let draw = primitives[slot].draw;
     let point = surface_point(primitives[slot].corners, at, surfaces[draw].flags);
     let look = look_at(draw, point);
     let own = surfaces[draw].own_blockers;
     let light = reflected(point, look, surfaces[draw].metallic, surfaces[draw].wrap, own);
-    return developed(light, at);
+    return developed(light, at, pixel);
 }
 
 // Display light of a pixel whose samples start at `first`.
 fn pixel_color(first: u32, corner: vec2<f32>) -> vec3<f32> {
+    let pixel = vec2<u32>(corner);
     var color = vec3<f32>(0.0);
     var nothing = 0u;
     var rest = (1u << SAMPLES) - 1u;
@@ -88,10 +89,11 @@ fn pixel_color(first: u32, corner: vec2<f32>) -> vec3<f32> {
             }
         }
         let at = corner + vec2<f32>(sum) * (1.0 / f32(count)) * (1.0 / 16.0);
-        color += fragment(own.x, at) * (f32(count) / f32(SAMPLES));
+        color += fragment(own.x, at, pixel) * (f32(count) / f32(SAMPLES));
     }
     if nothing > 0u {
-        color += developed(backdrop(corner + 0.5), corner + 0.5) * (f32(nothing) / f32(SAMPLES));
+        let light = developed(backdrop(corner + 0.5), corner + 0.5, pixel);
+        color += light * (f32(nothing) / f32(SAMPLES));
     }
     return color;
 }

@@ -24,9 +24,10 @@ struct Frame {
     object_count: u32,
     // Light, all of it times the exposure.
     sky: vec3<f32>,
-    pad0: u32,
+    // Variance of the sensor's noise per unit of light, and that in the dark.
+    shot_noise: f32,
     ground: vec3<f32>,
-    pad1: u32,
+    read_variance: f32,
     // Exposed light where nothing stands.
     background: vec3<f32>,
     // Key of the grain, mixed.
@@ -53,7 +54,8 @@ struct Frame {
     environment_unit: f32,
     // Spheres in the way of surrounding light.
     blocker_count: u32,
-    pad5: u32,
+    // Key of the sensor's noise, mixed.
+    sensor_key: u32,
     // Rows of the rotation into its axes.
     environment_from_view: array<vec4<f32>, 3>,
     // First word among the texels and log2 of the width of each level, two levels in one.

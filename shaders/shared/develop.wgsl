@@ -56,11 +56,25 @@ fn agx(light: vec3<f32>) -> vec3<f32> {
     return exp2(log2(encoded) * 2.2);
 }
 
-// Linear display light, 0..1, of exposed light at a position in the picture.
-fn developed(exposed: vec3<f32>, at: vec2<f32>) -> vec3<f32> {
+// Noise of a pixel's channels, standard deviation 1; core/src/engine/noise.rs has the same.
+fn sensor_noise(pixel: vec2<u32>) -> vec3<f32> {
+    let own = mixed(pixel.x + mixed(pixel.y + frame.sensor_key));
+    var unit: vec3<f32>;
+    for (var channel = 0u; channel < 3u; channel++) {
+        unit[channel] = f32(i32(sum_of_bytes(mixed(own ^ (channel + 1u)))) - 510) / 147.80031;
+    }
+    return unit;
+}
+
+// Linear display light, 0..1, of exposed light at a position in the picture, which lies in a pixel.
+fn developed(exposed: vec3<f32>, at: vec2<f32>, pixel: vec2<u32>) -> vec3<f32> {
     var light = exposed;
     if frame.vignette > 0.0 {
         light *= vignette(at);
+    }
+    if HAS_NOISE {
+        let variance = max(light, vec3<f32>(0.0)) * frame.shot_noise + frame.read_variance;
+        light += sqrt(variance) * sensor_noise(pixel);
     }
     if frame.contrast > 0.0 {
         light = graded(light);

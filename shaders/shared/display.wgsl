@@ -16,10 +16,13 @@ fn mixed(v: u32) -> u32 {
     return (word >> 22u) ^ word;
 }
 
+fn sum_of_bytes(v: u32) -> u32 {
+    return (v & 255u) + ((v >> 8u) & 255u) + ((v >> 16u) & 255u) + (v >> 24u);
+}
+
 // Grain of a pixel, sRGB: the sum of four bytes of a hash.
 fn grain(pixel: vec2<u32>) -> f32 {
-    let bytes = mixed(pixel.x + mixed(pixel.y + frame.grain_key));
-    let sum = (bytes & 255u) + ((bytes >> 8u) & 255u) + ((bytes >> 16u) & 255u) + (bytes >> 24u);
+    let sum = sum_of_bytes(mixed(pixel.x + mixed(pixel.y + frame.grain_key)));
     return f32(i32(sum) - 510) * frame.grain;
 }
 

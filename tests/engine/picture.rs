@@ -1,7 +1,7 @@
 //! Light, textures and shadows against the oracle and closed forms.
 
 use figurant_core::draw::DrawList;
-use figurant_core::draw::abi::{Blocker, Material, PointLight, Sun, Surroundings};
+use figurant_core::draw::abi::{Blocker, Material, PointLight, Sun, Surroundings, ToneCurve};
 use figurant_core::library::environment::EnvironmentMap;
 use figurant_core::library::environment::equirect::Equirect;
 use figurant_core::library::environment::map::Detail;
@@ -105,6 +105,38 @@ fn a_white_wall_sends_back_what_the_formula_says() {
     // Beyond its range a light does nothing.
     list.lights.points[0].range_m = 4.9;
     assert_eq!(pixel(&render(&list, &[Output::Rgb]), 32, 32), [0; 3]);
+}
+
+#[test]
+fn a_sensors_noise_has_the_spread_that_light_and_reading_give() {
+    for (shot, read, light) in [(0.01_f64, 0.0_f64, 0.5_f64), (0.0, 0.03, 0.4), (0.004, 0.02, 0.25)]
+    {
+        let mut list = empty(view(256, 256, 256.0), 4);
+        list.grade.shot_noise = shot as f32;
+        list.grade.read_noise = read as f32;
+        list.grade.tone_curve = ToneCurve::None;
+        list.lights.background_nits = [light as f32; 3];
+        let frame = render(&list, &[Output::Rgb]);
+        let all: Vec<[f64; 3]> = (0..256 * 256)
+            .map(|i| pixel(&frame, i % 256, i / 256))
+            .map(|p| p.map(|byte| linear_from_srgb(f64::from(byte) / 255.0)))
+            .collect();
+        let mean = |f: &dyn Fn(&[f64; 3]) -> f64| all.iter().map(f).sum::<f64>() / all.len() as f64;
+        let expected = (shot * light + read * read).sqrt();
+        for c in 0..3 {
+            let level = mean(&|p| p[c]);
+            let spread = mean(&|p| (p[c] - level).powi(2)).sqrt();
+            assert!((level / light - 1.0).abs() < 0.005, "{level} is not {light}");
+            assert!((spread / expected - 1.0).abs() < 0.02, "{spread} is not {expected}");
+            let other = mean(&|p| (p[c] - level) * (p[(c + 1) % 3] - light));
+            assert!(other.abs() < 0.02 * expected * expected, "{other}");
+        }
+    }
+}
+
+/// Linear light of sRGB, 0..1 (IEC 61966-2-1).
+fn linear_from_srgb(v: f64) -> f64 {
+    if v <= 0.04045 { v / 12.92 } else { ((v + 0.055) / 1.055).powf(2.4) }
 }
 
 /// Under a uniform sky: by adding up the cosines of the directions that do not meet the sphere.

@@ -101,6 +101,8 @@ pub fn any_grade(dice: &mut Dice) -> Grade {
     let contrast = if dice.unit() < 0.3 { 1.0 } else { dice.range(0.5, 1.5) as f32 };
     Grade {
         vignette: if dice.unit() < 0.3 { 0.0 } else { dice.range(0.0, 0.6) as f32 },
+        shot_noise: if dice.unit() < 0.6 { 0.0 } else { dice.range(0.0, 0.01) as f32 },
+        read_noise: if dice.unit() < 0.6 { 0.0 } else { dice.range(0.0, 0.02) as f32 },
         color: (dice.unit() < 0.8).then_some(ColorGrade { before, contrast, after }),
         tone_curve: [ToneCurve::Aces, ToneCurve::Agx, ToneCurve::None][dice.below(3)],
         grain: if dice.unit() < 0.5 { 0.0 } else { 0.03 },

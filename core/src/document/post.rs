@@ -1,5 +1,5 @@
-//! What happens to the light behind the lens, in this order: exposure, vignette, white balance,
-//! contrast, saturation, tone curve, grain.
+//! What happens to the light behind the lens, in this order: exposure, vignette, the sensor's noise,
+//! white balance, contrast, saturation, tone curve, grain.
 //!
 //! Ranges and meanings are those of the seed, PeopleSansPeople. Its grain was switched off.
 
@@ -22,6 +22,11 @@ pub struct Post {
     /// How much darker the corners are: 0 not at all .. 1. At 0.5 the corners are black and the
     /// middles of the edges have 0.4375 of their light.
     pub vignette: Param,
+    /// Variance of the sensor's noise per unit of light, 1 being what fills it: 0.001 is that of a
+    /// thousand electrons. Each channel of each pixel has its own noise.
+    pub shot_noise: Param,
+    /// Standard deviation of the sensor's noise in the dark, where 1 fills it.
+    pub read_noise: Param,
     /// White balance, -100 bluish .. 100 yellowish.
     pub white_balance_temperature: Param,
     /// White balance, -100 greenish .. 100 purple.
@@ -47,6 +52,8 @@ impl Default for Post {
             // (0.505) and clipped share (1 %).
             compensation_ev: (-1.5).into(),
             vignette: Param::uniform(0.0, 0.5),
+            shot_noise: 0.0.into(),
+            read_noise: 0.0.into(),
             white_balance_temperature: Param::uniform(-20.0, 20.0),
             white_balance_tint: 0.0.into(),
             contrast: Param::uniform(-30.0, 30.0),

@@ -508,6 +508,8 @@ fn post(c: &mut Check, post: &Post) {
     c.param("post.exposure_ev", &post.exposure_ev, Range::from_to(-20.0, 40.0));
     c.param("post.compensation_ev", &post.compensation_ev, Range::from_to(-20.0, 20.0));
     c.param("post.vignette", &post.vignette, Range::from_to(0.0, 1.0));
+    c.param("post.shot_noise", &post.shot_noise, SHARE);
+    c.param("post.read_noise", &post.read_noise, SHARE);
     let both_ways = [
         ("post.white_balance_temperature", &post.white_balance_temperature),
         ("post.white_balance_tint", &post.white_balance_tint),

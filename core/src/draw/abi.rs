@@ -241,18 +241,28 @@ impl Blocker {
     pub const OWN_BIAS: f32 = 0.25;
 }
 
-/// From exposed light to the picture: vignette, colour, tone curve, and grain on what is encoded.
+/// From exposed light to the picture: vignette, the sensor's noise, colour, tone curve, and grain on
+/// what is encoded.
+///
+/// Noise is that of photons and of reading them out (Foi, Trimeche, Katkovnik and Egiazarian,
+/// "Practical Poissonian-Gaussian noise modeling and fitting for single-image raw-data", IEEE
+/// Transactions on Image Processing 17, 2008): light v of a channel of a pixel becomes `v + sqrt(shot v +
+/// read^2) z`, with z of mean 0 and standard deviation 1.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Grade {
     /// 0 none .. 1: `1 - d.d` of the light is left at `d = min(3 vignette |xy / size - 1/2|, 1)`.
     pub vignette: f32,
+    /// Variance of the sensor's noise per unit of light.
+    pub shot_noise: f32,
+    /// Standard deviation of the sensor's noise in the dark.
+    pub read_noise: f32,
     /// White balance, contrast and saturation.
     pub color: Option<ColorGrade>,
     /// To linear display light.
     pub tone_curve: ToneCurve,
     /// Standard deviation of monochrome noise in sRGB 0..1.
     pub grain: f32,
-    /// Key of the noise.
+    /// Key of all noise.
     pub grain_key: u32,
 }
 

@@ -30,6 +30,8 @@ const LUMA: DVec3 = DVec3::new(0.272_228_7, 0.674_081_8, 0.053_689_5);
 pub fn grade(post: &Post) -> Grade {
     Grade {
         vignette: post.vignette as f32,
+        shot_noise: post.shot_noise as f32,
+        read_noise: post.read_noise as f32,
         color: color(post),
         tone_curve: post.tone_curve,
         grain: post.grain as f32,

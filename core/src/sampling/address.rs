@@ -139,6 +139,8 @@ const PARAMS: &[(&str, Key)] = &[
     ("post.exposure_ev", keys::EXPOSURE),
     ("post.compensation_ev", keys::COMPENSATION),
     ("post.vignette", keys::VIGNETTE),
+    ("post.shot_noise", keys::SHOT_NOISE),
+    ("post.read_noise", keys::READ_NOISE),
     ("post.white_balance_temperature", keys::TEMPERATURE),
     ("post.white_balance_tint", keys::TINT),
     ("post.contrast", keys::CONTRAST),

@@ -157,6 +157,8 @@ keys! {
     LAMP_TEMPERATURE = "lights.lamp.temperature",
     JPEG_QUALITY = "output.jpeg_quality",
     OCCLUDER_IN_VIEW = "occluders.placement.in_view",
+    SHOT_NOISE = "post.shot_noise",
+    READ_NOISE = "post.read_noise",
     SEAT_SHAPE = "people.seats.shape",
     SEAT_TEXTURE = "people.seats.texture",
     SEAT_COLOR = "people.seats.color",

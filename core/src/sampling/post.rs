@@ -19,6 +19,8 @@ pub(super) fn post(post: &document::Post, draws: Draws) -> Post {
     let of = |param, key| number(param, draws.of(key, 0));
     Post {
         vignette: of(&post.vignette, keys::VIGNETTE),
+        shot_noise: of(&post.shot_noise, keys::SHOT_NOISE),
+        read_noise: of(&post.read_noise, keys::READ_NOISE),
         white_balance_temperature: of(&post.white_balance_temperature, keys::TEMPERATURE),
         white_balance_tint: of(&post.white_balance_tint, keys::TINT),
         contrast: of(&post.contrast, keys::CONTRAST),

@@ -7,6 +7,12 @@ use serde::{Deserialize, Serialize};
 pub struct Post {
     /// 0..1: `1 - d.d` of the light is left at `d = 3 vignette |xy / size - 1/2|`, each axis at most 1.
     pub vignette: f64,
+    /// Variance of the sensor's noise per unit of light, 1 being what fills it.
+    #[serde(default)]
+    pub shot_noise: f64,
+    /// Standard deviation of the sensor's noise in the dark.
+    #[serde(default)]
+    pub read_noise: f64,
     /// -100 bluish .. 100 yellowish.
     pub white_balance_temperature: f64,
     /// -100 greenish .. 100 purple.
@@ -19,7 +25,7 @@ pub struct Post {
     pub tone_curve: ToneCurve,
     /// Standard deviation of monochrome noise, a share of the picture's full scale (sRGB).
     pub grain: f64,
-    /// Key of that noise.
+    /// Key of that noise and of the sensor's.
     pub grain_key: u32,
 }
 

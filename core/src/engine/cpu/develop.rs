@@ -1,6 +1,6 @@
 //! Develop: the light that reaches the sensor to linear display light.
 //!
-//! Vignette, white balance, contrast, saturation, tone curve, each left out where it does nothing.
+//! Vignette, the sensor's noise, white balance, contrast, saturation, tone curve, each left out where it does nothing.
 //! Works on fragments, before they are summed up to pixels. Curves: Narkowicz, "ACES filmic tone
 //! mapping curve" (2015); AgX (Sobotka, 2022) in the polynomial form of Wrensch, "Minimal AgX
 //! implementation" (2023). The formulas stand in `shaders/shared/develop.wgsl` as well.
@@ -9,7 +9,7 @@ use super::samples::{Layout, TILE};
 use super::shade::{LensRays, Stage, TileColor};
 use super::simd::{F32x8, LANES, Vec3x8, kernel};
 use crate::draw::DrawList;
-use crate::draw::abi::{ColorGrade, ToneCurve};
+use crate::draw::abi::{ColorGrade, Grade, ToneCurve};
 
 /// Darkest and brightest light of AgX, binary orders of magnitude.
 const AGX_RANGE: [f32; 2] = [-12.473_93, 4.026_069];
@@ -30,6 +30,7 @@ const AGX_OUTSET: [[f32; 3]; 3] = [
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Develop {
     vignette: Option<Vignette>,
+    noise: Option<SensorNoise>,
     color: Option<ColorGrade>,
     curve: ToneCurve,
 }
@@ -41,6 +42,22 @@ struct Vignette {
     at_middle: f32,
 }
 
+/// Noise of photons and of reading them out; see [`crate::draw::abi::Grade`].
+#[derive(Clone, Copy, Debug)]
+struct SensorNoise {
+    shot: f32,
+    read2: f32,
+}
+
+impl SensorNoise {
+    /// Light with noise that is `unit` at standard deviation 1.
+    #[inline(always)]
+    fn add<const AVX2: bool>(&self, light: F32x8<AVX2>, unit: F32x8<AVX2>) -> F32x8<AVX2> {
+        let variance = light.max(F32x8::ZERO) * F32x8::splat(self.shot) + F32x8::splat(self.read2);
+        light + variance.sqrt() * unit
+    }
+}
+
 impl Develop {
     pub(super) fn new(list: &DrawList) -> Self {
         let (grade, view) = (&list.grade, &list.view);
@@ -49,22 +66,40 @@ impl Develop {
             per_px: [view.width, view.height].map(|side| strength / side as f32),
             at_middle: 0.5 * strength,
         };
+        let read2 = grade.read_noise * grade.read_noise;
+        let noise = SensorNoise { shot: grade.shot_noise, read2 };
         Self {
             vignette: (grade.vignette > 0.0).then_some(vignette),
+            noise: Self::is_noisy(grade).then_some(noise),
             color: grade.color,
             curve: grade.tone_curve,
         }
     }
 
-    /// Linear display light, 0..1, of exposed light at positions in the picture.
+    /// Whether the sensor adds noise.
+    pub(super) fn is_noisy(grade: &Grade) -> bool {
+        grade.shot_noise > 0.0 || grade.read_noise > 0.0
+    }
+
+    /// Linear display light, 0..1, of exposed light at positions in the picture; `unit` is the
+    /// pixels' noise at standard deviation 1.
     #[inline(always)]
     pub(super) fn display<const AVX2: bool>(
         &self,
         light: Vec3x8<AVX2>,
         at: [F32x8<AVX2>; 2],
+        unit: Vec3x8<AVX2>,
     ) -> Vec3x8<AVX2> {
         let light = match &self.vignette {
             Some(vignette) => light.scale(vignette.share(at)),
+            None => light,
+        };
+        let light = match &self.noise {
+            Some(noise) => Vec3x8::new(
+                noise.add(light.x, unit.x),
+                noise.add(light.y, unit.y),
+                noise.add(light.z, unit.z),
+            ),
             None => light,
         };
         let light = match &self.color {
@@ -158,14 +193,14 @@ fn agx_curve<const AVX2: bool>(v: F32x8<AVX2>) -> F32x8<AVX2> {
 pub(super) struct Backdrop(pub(super) [f32; 3]);
 
 kernel! {
-    /// Starts a tile's colours with what shows where nothing stands; `share` by pixel slot, `rays`
-    /// those of a lens where there is one.
+    /// Starts a tile's colours with what shows where nothing stands; `rays` are those of a lens where
+    /// there is one, `pixels` the background's share by pixel slot, and noise where there is any.
     fn start_with_background[const S: usize](
         stage: &Stage<'_>,
         backdrop: Backdrop,
         rays: Option<&LensRays>,
         origin_px: [u32; 2],
-        share: &[f32],
+        pixels: (&[f32], Option<&TileColor>),
         color: &mut TileColor,
     ) = start_with_background_body
 }
@@ -176,15 +211,15 @@ fn start_with_background_body<const AVX2: bool, const S: usize>(
     backdrop: Backdrop,
     rays: Option<&LensRays>,
     origin_px: [u32; 2],
-    share: &[f32],
+    (share, noise): (&[f32], Option<&TileColor>),
     color: &mut TileColor,
 ) {
     let [red, green, blue] = color;
     let develop = &stage.develop;
     let environment = stage.lighting.environment();
-    let varies = develop.vignette.is_some() || environment.is_some();
+    let varies = develop.vignette.is_some() || environment.is_some() || noise.is_some();
     let mut exposed = Vec3x8::splat(backdrop.0);
-    let plain = develop.display::<AVX2>(exposed, [F32x8::ZERO; 2]);
+    let plain = develop.display::<AVX2>(exposed, [F32x8::ZERO; 2], Vec3x8::ZERO);
     for first in (0..TILE * TILE).step_by(LANES) {
         let share = F32x8::<AVX2>::load(&share[first..]);
         let mut light = plain;
@@ -207,7 +242,11 @@ fn start_with_background_body<const AVX2: bool, const S: usize>(
                 };
                 exposed = environment.seen(directions);
             }
-            light = develop.display(exposed, at);
+            let unit = noise.map_or(Vec3x8::ZERO, |noise| {
+                let [r, g, b] = [0, 1, 2].map(|c| F32x8::load(&noise[c][first..]));
+                Vec3x8::new(r, g, b)
+            });
+            light = develop.display(exposed, at, unit);
         }
         (light.x * share).store(&mut red[first..]);
         (light.y * share).store(&mut green[first..]);
@@ -218,13 +257,12 @@ fn start_with_background_body<const AVX2: bool, const S: usize>(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::draw::abi::Grade;
 
     fn developed(grade: Grade, light: [f32; 3], at: [f32; 2]) -> [f32; 3] {
         let mut list = DrawList { grade, ..DrawList::default() };
         (list.view.width, list.view.height) = (400, 300);
         let light = Vec3x8::<false>::splat(light);
-        let out = Develop::new(&list).display(light, at.map(F32x8::splat));
+        let out = Develop::new(&list).display(light, at.map(F32x8::splat), Vec3x8::ZERO);
         [out.x, out.y, out.z].map(|v| v.0[0])
     }
 

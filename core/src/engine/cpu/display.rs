@@ -6,7 +6,7 @@
 use super::samples::{Layout, TILE};
 use super::shade::TileColor;
 use super::simd::{F32x8, I32x8, LANES, kernel};
-use crate::engine::noise::{GRAIN_STD, mixed};
+use crate::engine::noise::{self, GRAIN_STD, mixed};
 
 /// Linear display light 0..1 to sRGB 0..1.
 ///
@@ -72,6 +72,17 @@ pub(super) fn grain<const S: usize>(
         let [a, b, c, d] = mixed(x.wrapping_add(mixed(y.wrapping_add(key)))).to_le_bytes();
         let sum = i32::from(a) + i32::from(b) + i32::from(c) + i32::from(d) - 510;
         *out = sum as f32 * scale;
+    }
+}
+
+/// The sensor's noise by pixel slot, each channel at standard deviation 1.
+pub(super) fn sensor_noise<const S: usize>(key: u32, origin_px: [u32; 2], out: &mut TileColor) {
+    let key = noise::sensor_key(key);
+    for (slot, xy) in Layout::<S>::SLOT_XY.iter().enumerate() {
+        let pixel = [0, 1].map(|axis| origin_px[axis] + u32::from(xy[axis]));
+        for (channel, noise) in out.iter_mut().zip(noise::sensor_noise(key, pixel)) {
+            channel[slot] = noise;
+        }
     }
 }
 

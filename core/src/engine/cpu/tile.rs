@@ -48,6 +48,8 @@ pub(super) struct Scratch {
     color: Box<TileColor>,
     /// Grain by pixel slot, 1/255.
     noise: Box<[f32; TILE * TILE]>,
+    /// The sensor's noise by channel and pixel slot.
+    sensor: Box<TileColor>,
     bytes: Box<[[u8; 3]; TILE * TILE]>,
     objects: SampleObjects,
     resolved: Box<Resolved>,
@@ -67,6 +69,7 @@ impl Default for Scratch {
             reaching: Reaching::default(),
             color: Box::new([[0.0; TILE * TILE]; 3]),
             noise: Box::new([0.0; TILE * TILE]),
+            sensor: Box::new([[0.0; TILE * TILE]; 3]),
             bytes: Box::new([[0; 3]; TILE * TILE]),
             objects: SampleObjects::default(),
             resolved: Box::default(),
@@ -216,7 +219,13 @@ impl TilePass<'_> {
         lens: Option<&LensTile>,
         scratch: &mut Scratch,
     ) {
-        let view = &self.list.view;
+        let (view, grade) = (&self.list.view, &self.list.grade);
+        let noisy = develop::Develop::is_noisy(grade);
+        if noisy {
+            scratch.measure(Step::Display, |s| {
+                display::sensor_noise::<S>(grade.grain_key, origin_px, &mut s.sensor);
+            });
+        }
         scratch.measure(Step::Fragments, |s| {
             let visible = Visible {
                 chunks: self.chunks,
@@ -232,7 +241,7 @@ impl TilePass<'_> {
                 shading.backdrop,
                 lens.map(|lens| &*lens.rays),
                 origin_px,
-                &s.fragments.background,
+                (&s.fragments.background, noisy.then_some(&*s.sensor)),
                 &mut s.color,
             );
         });
@@ -248,7 +257,8 @@ impl TilePass<'_> {
                     mirrored: self.placed.mirrored[draw.object as usize],
                     blockers: &self.list.objects[draw.object as usize].blockers,
                 };
-                let (level, stage, reaching) = (self.level, &shading.stage, &s.reaching);
+                let (level, stage) = (self.level, &shading.stage);
+                let reaching = (&s.reaching, noisy.then_some(&*s.sensor));
                 let (color, rays) = (&mut s.color, lens.map(|lens| &*lens.rays));
                 match rays {
                     Some(_) => shade::<true>(level, stage, drawn, rays, reaching, bucket, color),

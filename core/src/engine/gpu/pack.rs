@@ -296,6 +296,9 @@ fn add_grade(frame: &mut Frame, grade: &Grade) {
     frame.vignette = 3.0 * grade.vignette;
     frame.grain = grade.grain / noise::GRAIN_STD;
     frame.grain_key = noise::mixed(grade.grain_key);
+    frame.sensor_key = noise::sensor_key(grade.grain_key);
+    frame.shot_noise = grade.shot_noise;
+    frame.read_variance = grade.read_noise * grade.read_noise;
     frame.tone_curve = match grade.tone_curve {
         ToneCurve::Aces => 0,
         ToneCurve::Agx => 1,

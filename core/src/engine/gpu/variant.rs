@@ -33,18 +33,21 @@ pub struct Light {
     sun: bool,
     /// That casts shadows.
     shadow: bool,
+    /// The sensor's noise.
+    noise: bool,
     /// Which tone curve.
     tone_curve: u32,
 }
 
 impl Light {
     /// Of a frame.
-    pub const fn of(frame: &Frame) -> Self {
+    pub fn of(frame: &Frame) -> Self {
         Self {
             environment: frame.has_environment != 0,
             blockers: frame.blocker_count != 0,
             sun: frame.has_sun != 0,
             shadow: frame.has_shadow != 0,
+            noise: frame.shot_noise > 0.0 || frame.read_variance > 0.0,
             tone_curve: frame.tone_curve,
         }
     }
@@ -65,7 +68,8 @@ impl Variant {
         let of = move |(samples, light)| Self { samples, light }.of(stage);
         let lights = (0..2 * TONE_CURVES).map(|k| {
             let all = k % 2 == 1;
-            Light { environment: all, blockers: all, sun: all, shadow: all, tone_curve: k / 2 }
+            let [environment, blockers, sun, shadow, noise] = [all; 5];
+            Light { environment, blockers, sun, shadow, noise, tone_curve: k / 2 }
         });
         let every = lights.flat_map(|light| SAMPLES.map(|samples| (samples, light)));
         let mut variants: Vec<Self> = every.map(of).collect();
@@ -84,7 +88,7 @@ impl Variant {
         // With one sample a pixel, positions are whole pixels from its middle, else sixteenths.
         let (grid_log2, corner) = if samples == 1 { (10, 8) } else { (6, 0) };
         let pixels = pixels_of_lane(samples);
-        let Light { environment, blockers, sun, shadow, tone_curve } = light;
+        let Light { environment, blockers, sun, shadow, noise, tone_curve } = light;
         format!(
             "const SAMPLES: u32 = {samples}u;\n\
              const POSITIONS = array<vec2<i32>, {samples}>({});\n\
@@ -96,6 +100,7 @@ impl Variant {
              const HAS_BLOCKERS: bool = {blockers};\n\
              const HAS_SUN: bool = {sun};\n\
              const HAS_SHADOW: bool = {shadow};\n\
+             const HAS_NOISE: bool = {noise};\n\
              const TONE_CURVE: u32 = {tone_curve}u;\n",
             positions.join(", "),
             1 << (10 - grid_log2),

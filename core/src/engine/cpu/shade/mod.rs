@@ -54,12 +54,12 @@ pub(super) struct DrawnSurface<'a> {
 
 kernel! {
     /// Shades the fragments of one draw; `rays` are those of a lens where there is one, which `LENS`
-    /// says.
+    /// says, `noise` the pixels' where there is any.
     fn shade[const LENS: bool](
         stage: &Stage<'_>,
         drawn: DrawnSurface<'_>,
         rays: Option<&[[f32; TILE * TILE]; 6]>,
-        reaching: &Reaching,
+        near: (&Reaching, Option<&TileColor>),
         fragments: &Bucket,
         color: &mut TileColor,
     ) = shade_body
@@ -70,7 +70,7 @@ fn shade_body<const AVX2: bool, const LENS: bool>(
     stage: &Stage<'_>,
     drawn: DrawnSurface<'_>,
     rays: Option<&[[f32; TILE * TILE]; 6]>,
-    reaching: &Reaching,
+    (reaching, noise): (&Reaching, Option<&TileColor>),
     fragments: &Bucket,
     color: &mut TileColor,
 ) {
@@ -102,7 +102,8 @@ fn shade_body<const AVX2: bool, const LENS: bool>(
         for (group, light) in light.iter().enumerate() {
             let first = (first + group) * LANES;
             let at = [F32x8::load(&fragments.x[first..]), F32x8::load(&fragments.y[first..])];
-            add_to_picture(stage.develop.display(*light, at), fragments, first, color);
+            let unit = noise.map_or(Vec3x8::ZERO, |noise| of_pixels(noise, fragments, first));
+            add_to_picture(stage.develop.display(*light, at, unit), fragments, first, color);
         }
         first += count;
     }
@@ -131,6 +132,16 @@ fn visible_points<const AVX2: bool, const LENS: bool>(
         );
     }
     points
+}
+
+/// What the pixels of eight fragments have in a tile.
+#[inline(always)]
+fn of_pixels<const AVX2: bool>(tile: &TileColor, fragments: &Bucket, first: usize) -> Vec3x8<AVX2> {
+    let slots: &[u16; LANES] =
+        fragments.slot[first..].first_chunk().expect("padded to a multiple of eight");
+    let [r, g, b] =
+        [0, 1, 2].map(|c| F32x8(slots.map(|slot| tile[c][usize::from(slot) & (TILE * TILE - 1)])));
+    Vec3x8::new(r, g, b)
 }
 
 /// Adds the display light of eight fragments to their pixels.
