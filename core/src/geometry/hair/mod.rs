@@ -20,7 +20,7 @@ pub(super) mod scalp;
 pub(super) mod strand;
 mod style;
 
-use std::ops::Range;
+use std::ops::{Range, RangeInclusive};
 
 use glam::Vec3;
 
@@ -37,8 +37,9 @@ use crate::scene::{HairStyle, HeadwearKind, Person};
 
 /// Locks by level of detail: share of the finest count, width, and share of the points.
 const LEVELS: [(f32, f32, f32); 3] = [(0.6, 1.25, 0.85), (0.22, 1.9, 0.6), (0.1, 2.6, 0.5)];
-/// At the finest level a lock of so many points or more is drawn as so many strands.
-const STRANDED_FROM: usize = 4;
+/// At the finest level a lock of so many points is drawn as so many strands; those of more are curls,
+/// which are no planks and would take too much memory.
+const STRANDED: RangeInclusive<usize> = 4..=16;
 const STRANDS: usize = 3;
 /// Roots start a little under the skin.
 const SUNK_M: f32 = 0.0014;
@@ -355,7 +356,7 @@ impl Grower<'_> {
                 u: dice.unit() * 4.0,
                 tuft: locks.tuft,
             };
-            if self.head.lod == 0 && points >= STRANDED_FROM {
+            if self.head.lod == 0 && STRANDED.contains(&points) {
                 strands(mesh, &ribbon, &path, &mut dice, &skin);
             } else {
                 ribbon.add(mesh, &path, &skin);

@@ -114,6 +114,14 @@ fn dressed(figure: &Figure, i: usize, lod: usize) -> Dressed {
 }
 
 #[test]
+fn nobody_takes_more_than_two_megabytes() {
+    let figure = Figure::built_in().unwrap();
+    let largest = (0..30).map(|i| (dressed(&figure, i, 0).mesh.size_bytes(), i)).max();
+    let (bytes, i) = largest.unwrap();
+    assert!(bytes <= 2_000_000, "{bytes} bytes: {:?}", person(i).look.hair);
+}
+
+#[test]
 fn every_mesh_is_sound() {
     let figure = Figure::built_in().unwrap();
     for i in 0..15 {
