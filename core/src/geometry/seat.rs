@@ -10,6 +10,7 @@ use super::body::RestBody;
 use super::points::pose_vertex;
 use super::pose::PosedSkeleton;
 use super::skeleton::{Limb, Side, trunk};
+use super::stance::turn;
 use crate::library::mesh::SkinVertex;
 
 /// Of a thigh's length: how far a seat reaches behind the hips, beside them at least, and how short it
@@ -47,7 +48,7 @@ pub fn seat_block(skeleton: &PosedSkeleton, body: &RestBody) -> Option<SeatBlock
     let at = |joint: usize| skeleton.joint_m(joint, body.heads_m[joint]);
     let facing = skeleton.model_from_rest[trunk::HIPS].matrix3.z_axis;
     let forward = facing.with_y(0.0).try_normalize()?;
-    let rotation = DQuat::from_rotation_y(libm::atan2(forward.x, forward.z));
+    let rotation = turn(DVec3::Y, libm::atan2(forward.x, forward.z).to_degrees());
     let hips_m = Side::BOTH.map(|s| at(s.joint(Limb::UpLeg)));
     let middle_m = (hips_m[0] + hips_m[1]) * 0.5;
     let head_m = |joint: usize| body.heads_m[joint];
@@ -62,10 +63,8 @@ pub fn seat_block(skeleton: &PosedSkeleton, body: &RestBody) -> Option<SeatBlock
     let calves_m = below.map(|p| ahead_m(*p)).fold(thigh_m, f64::min);
     // Neither are hands that hang down between the knees in it.
     let hands = [Limb::Hand, Limb::Middle1].map(|limb| Side::BOTH.map(|s| at(s.joint(limb))));
-    let hanging = hands.as_flattened().iter().filter(|p| {
-        p.y < middle_m.y - HANGING * thigh_m && (p.with_y(middle_m.y) - middle_m).dot(forward) > 0.0
-    });
-    let hands_m = hanging.map(|p| ahead_m(*p)).fold(thigh_m, f64::min);
+    let hanging = hands.as_flattened().iter().filter(|p| p.y < middle_m.y - HANGING * thigh_m);
+    let hands_m = hanging.map(|p| ahead_m(*p)).filter(|m| *m > 0.0).fold(thigh_m, f64::min);
     let ends_m = (calves_m - CALF * thigh_m).min(hands_m - HAND * thigh_m);
     let front_m = ends_m.max(back_m + SHORTEST * thigh_m);
 

@@ -16,7 +16,6 @@ const FARTHEST: f64 = 2.5;
 const PLACE_LANES: usize = 64;
 /// Of wood, cloth and plastics alike.
 const SEAT_ROUGHNESS: f64 = 0.6;
-
 /// How many poses are drawn for clothes that they may not suit.
 const TRIES: u16 = 32;
 
@@ -85,7 +84,8 @@ fn is_worn(wear: Wear, outfit: &Outfit) -> bool {
 static NOTHING: Activity =
     Activity { id: String::new(), activity: String::new(), seated: false, unsuited: Vec::new() };
 
-/// The clip or pose that a choice falls on when it is drawn once more. The catalogue holds what the choice names.
+/// The clip or pose that a choice falls on, when it is drawn again for the n-th time. The catalogue
+/// holds what the choice names.
 fn activity<'a>(
     choice: &Choice<String>,
     catalogue: &'a Catalogue,
