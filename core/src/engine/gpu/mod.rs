@@ -13,7 +13,8 @@
 //! and formulas are those of the native engine, so that both show the same to a thousandth of a
 //! pixel on every device with compute shaders. A picture whose samples do not fit one buffer is
 //! rendered in bands. Meshes and textures stay on the device ([`pool`]); all other buffers are kept
-//! from frame to frame. Only what the plan asks for is read back.
+//! from frame to frame. Only what the plan asks for is read back. Kinds of light that a frame has not
+//! got are no part of its shaders (`variant`).
 //!
 //! An engine is done with a frame before it begins the next: it packs, uploads what is new, records
 //! and submits on the thread that calls it, waits for that submission and copies what was read
