@@ -22,18 +22,20 @@ fn count(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) 
     let end = primitive_count();
     for (var i = id.x; i < end; i += 64u * groups.x) {
         let t = touched(primitives[i].x, primitives[i].y);
-        let small = primitives[i].flags & SMALL;
-        let others = select(raster_target.tiles.x * raster_target.tiles.y, 0u, small != 0u);
+        // Of the band before it may be large.
+        let flags = primitives[i].flags & ~LARGE;
+        let small = (flags & SMALL) != 0u;
+        let others = select(raster_target.tiles.x * raster_target.tiles.y, 0u, small);
         let many = (t.y - t.x + 1) * (t.w - t.z + 1) > MANY_TILES;
         if many {
             let slot = atomicAdd(&counters[1], 1u);
             if slot < LARGE_ROOM {
                 lists[slot] = i;
-                primitives[i].flags = small | LARGE;
+                primitives[i].flags = flags | LARGE;
                 continue;
             }
         }
-        primitives[i].flags = small;
+        primitives[i].flags = flags;
         for (var row = t.z; row <= t.w; row++) {
             for (var column = t.x; column <= t.y; column++) {
                 let tile = u32(row) * raster_target.tiles.x + u32(column);

@@ -10,6 +10,7 @@
 @group(0) @binding(5) var<storage, read> lists: array<u32>;
 // Primitive and bits of the depth.
 @group(0) @binding(6) var<storage, read_write> samples: array<vec2<u32>>;
+@group(0) @binding(7) var<storage, read> vertices: array<Vertex>;
 
 @compute @workgroup_size(64)
 fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index) index: u32) {

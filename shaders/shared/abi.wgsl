@@ -113,6 +113,8 @@ struct TriangleBatch {
     order: u32,
     mirrored: u32,
     double_sided: u32,
+    // See Primitive.flags.
+    cutout: u32,
 }
 
 // A placed vertex, view space.
@@ -250,6 +252,8 @@ const SMOOTH: u32 = 4u;
 // Primitive.flags
 const SMALL: u32 = 1u;
 const LARGE: u32 = 2u;
+// From here on: strands to 1 of u of its cutout, 10 binary digits, 0 for none, and its frayed v, 1/1024.
+const CUTOUT_SHIFT: u32 = 2u;
 
 // Side of a tile in pixels.
 const TILE_LOG2: u32 = 3u;

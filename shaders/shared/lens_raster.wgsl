@@ -4,7 +4,7 @@
 
 // x and y of the band's samples in the plane, raster units, row by row and those of a pixel side by
 // side.
-@group(0) @binding(7) var<storage, read> places: array<vec2<i32>>;
+@group(0) @binding(8) var<storage, read> places: array<vec2<i32>>;
 
 // Those of the invocation's samples, and the smallest and largest of them.
 var<private> own: array<vec2<i32>, KEPT>;
@@ -64,7 +64,7 @@ fn raster_one(slot: u32) {
             weights = vec2<f32>(e2.value, e0.value);
         }
         if covered {
-            keep(i, z.x + (weights.x * rise.x + weights.y * rise.y), order, slot);
+            keep(i, z.x + (weights.x * rise.x + weights.y * rise.y), order, slot, at);
         }
     }
 }

@@ -5,6 +5,9 @@
 // 127 steps to the right and down, and one for the start.
 const CUT_DIGITS: i32 = 255;
 
+// The tile's first sample, raster units.
+var<private> tile_origin: vec2<i32>;
+
 // Whether a sample, raster units from the tile's origin, lies in a triangle.
 fn covers(x: vec3<i32>, y: vec3<i32>, bias: vec3<i32>, at: vec2<i32>) -> bool {
     let a = y - y.yzx;
@@ -57,7 +60,8 @@ fn raster_large(slot: u32, lane: u32, x: vec3<i32>, y: vec3<i32>) {
                 continue;
             }
             if lowest >= 0 || covers(x, y, bias, at << vec2<u32>(GRID_LOG2)) {
-                keep(k * SAMPLES + s, depth + dot(slope, vec2<f32>(at)), order, slot);
+                let place = tile_origin + (at << vec2<u32>(GRID_LOG2));
+                keep(k * SAMPLES + s, depth + dot(slope, vec2<f32>(at)), order, slot, place);
             }
         }
     }
@@ -79,7 +83,7 @@ fn raster_small(slot: u32, lane: u32, x: vec3<i32>, y: vec3<i32>) {
             let inside = value + bias;
             if (inside.x | inside.y | inside.z) >= 0 {
                 let depth = z.x + (f32(value.z) * rise.x + f32(value.x) * rise.y);
-                keep(k * SAMPLES + s, depth, order, slot);
+                keep(k * SAMPLES + s, depth, order, slot, tile_origin + at);
             }
         }
     }
@@ -92,6 +96,7 @@ fn raster_tile(tile: vec2<u32>, lane: u32) {
     let corner = vec2<i32>(tile << vec2<u32>(TILE_LOG2)) + vec2<i32>(0, i32(raster_target.first_y));
     // The first sample of a grid that goes on over the tile, raster units.
     let origin = (corner << vec2<u32>(10u)) + GRID_CORNER * 64;
+    tile_origin = origin;
     let index = tile.y * raster_target.tiles.x + tile.x;
     let small = tiles[index];
     for (var i = small.end - small.count; i < small.end; i++) {

@@ -22,6 +22,7 @@ struct Source {
     draw: u32,
     mirrored: bool,
     double_sided: bool,
+    cutout: u32,
 }
 
 // Twice the area of a triangle, clockwise positive where y runs down.
@@ -118,7 +119,7 @@ fn shape(source: Source, a: ScreenVertex, b: ScreenVertex, c: ScreenVertex) -> S
         y,
         source.order,
         depth,
-        select(0u, SMALL, small),
+        select(0u, SMALL, small) | source.cutout,
         source.corners,
         source.draw,
     );
@@ -145,5 +146,6 @@ fn source_of(batch: TriangleBatch, lane: u32) -> Source {
         batch.draw,
         batch.mirrored != 0u,
         batch.double_sided != 0u,
+        batch.cutout,
     );
 }

@@ -10,7 +10,7 @@ use figurant_core::draw::abi::{
 use figurant_core::library::environment::EnvironmentMap;
 use figurant_core::library::environment::equirect::Equirect;
 use figurant_core::library::environment::map::Detail;
-use figurant_core::library::mesh::Mesh;
+use figurant_core::library::mesh::{Cutout, Mesh};
 use glam::{DAffine3, DMat3, DQuat, DVec2, DVec3};
 
 use crate::meshes::{self, Dice};
@@ -63,6 +63,7 @@ pub fn add(
         triangles: 0..mesh.triangles.len() as u32,
         material: list.materials.len() as u32,
         double_sided: false,
+        cutout: None,
     });
     list.materials.push(material);
     list.objects.push(DrawObject {
@@ -135,6 +136,17 @@ pub fn any_blockers(dice: &mut Dice, list: &mut DrawList) {
         })
         .collect();
     list.objects[0].blockers = 0..12;
+}
+
+/// Leaves strands of some draws.
+fn any_cutouts(dice: &mut Dice, list: &mut DrawList) {
+    for draw in &mut list.draws {
+        let cutout = Cutout {
+            strands_per_u: 1 + dice.below(40) as u16,
+            frayed_1024ths: 1 + dice.below(1500) as u16,
+        };
+        draw.cutout = (dice.unit() < 0.3).then_some(cutout);
+    }
 }
 
 /// Puts a lens before the pinhole of a draw list; says whether a picture can be taken through it.
@@ -259,5 +271,6 @@ pub fn mixed(seed: u64, samples: u32) -> DrawList {
             }
         }
     }
+    any_cutouts(&mut Dice::new(seed + 11), &mut list);
     list
 }

@@ -9,6 +9,7 @@ use figurant_core::base::lens::Lens;
 use figurant_core::draw::DrawList;
 use figurant_core::draw::abi::{Blocker, DrawObject, Material, Surroundings, View};
 use figurant_core::library::environment::map::LEVELS;
+use figurant_core::library::mesh::Cutout;
 use glam::{DMat3, DVec2, DVec3};
 
 /// Edges closer to a sample than this leave it in doubt, pixels.
@@ -27,6 +28,7 @@ struct Triangle {
     n: [DVec3; 3],
     uv: [DVec2; 3],
     double_sided: bool,
+    cutout: Option<Cutout>,
 }
 
 /// Where a ray first meets a surface.
@@ -125,6 +127,7 @@ impl Oracle {
                     uv: order
                         .map(|k| DVec2::from_array(object.mesh.uvs[corners[k]].map(f64::from))),
                     double_sided: draw.double_sided,
+                    cutout: draw.cutout,
                 });
             }
         }
@@ -182,7 +185,11 @@ impl Oracle {
             // The near plane cuts the triangle along an edge of its own.
             let at_near_plane =
                 (depth - 1.0).abs() < 1e-6 + self.edge_px * self.slope_per_px(normal, offset);
-            if margin > self.edge_px && !at_near_plane {
+            let there = self.there(t, ray);
+            if there == Some(false) {
+                continue;
+            }
+            if margin > self.edge_px && !at_near_plane && there.is_some() {
                 if best.is_none_or(|(_, d)| depth > d) {
                     second = best.map_or(second, |(_, d)| d.max(second));
                     best = Some((index, depth));
@@ -198,6 +205,16 @@ impl Oracle {
         let steep = hit.map_or(0.0, |h| h.slope_per_px) * self.edge_px;
         let doubt = doubtful > nearest - steep || (hit.is_some() && second > nearest - steep);
         Sample { hit, doubt: doubt && (doubtful > 0.0 || second > 0.0) }
+    }
+
+    /// Whether a cutout leaves anything where a ray meets the triangle's plane; nothing where places
+    /// an edge's width away differ.
+    fn there(&self, t: &Triangle, ray: DVec3) -> Option<bool> {
+        let Some(cutout) = t.cutout else { return Some(true) };
+        let step = self.edge_px / f64::from(self.view.fx.min(self.view.fy));
+        let around = [DVec3::ZERO, DVec3::X, DVec3::NEG_X, DVec3::Y, DVec3::NEG_Y];
+        let all = around.map(|way| on_strand(cutout, uv_along(t, ray + way * step)));
+        all.iter().all(|here| *here == all[0]).then_some(all[0])
     }
 
     /// The largest change of depth over a pixel on the plane `normal . p = offset`.
@@ -230,6 +247,27 @@ impl Oracle {
             uv: t.uv[0] * w[0] + t.uv[1] * w[1] + t.uv[2] * w[2],
         }
     }
+}
+
+/// Texture coordinates where a ray meets a triangle's plane.
+fn uv_along(t: &Triangle, ray: DVec3) -> DVec2 {
+    let normal = (t.p[1] - t.p[0]).cross(t.p[2] - t.p[0]);
+    let position = ray * (normal.dot(t.p[0]) / normal.dot(ray));
+    let part = |a: usize, b: usize| {
+        (t.p[a] - position).cross(t.p[b] - position).dot(normal) / normal.length_squared()
+    };
+    t.uv[0] * part(1, 2) + t.uv[1] * part(2, 0) + t.uv[2] * part(0, 1)
+}
+
+/// The formula that a cutout states.
+fn on_strand(cutout: Cutout, uv: DVec2) -> bool {
+    let along = f64::from(cutout.strands_per_u) * uv.x;
+    let strand = along.floor();
+    let hash = (strand as i64 as u32).wrapping_mul(0x9e37_79b1).to_be_bytes();
+    let [width, end] = [hash[0], hash[1]].map(|byte| f64::from(byte) / 256.0);
+    let (half, end) = (0.30 + 0.32 * width, 0.75 * end);
+    let way = uv.y * 1024.0 / f64::from(cutout.frayed_1024ths);
+    (along - strand - 0.5).abs() < half * ((way - end) / (1.0 - end)).min(1.0)
 }
 
 /// The way back through a lens, by other means than the engines': OpenCV's fixed-point iteration for

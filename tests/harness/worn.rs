@@ -377,6 +377,7 @@ impl Sorted {
                     triangles,
                     material: 0,
                     double_sided: patch.double_sided && show == Shown::All,
+                    cutout: None,
                 });
             }
         }

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use crate::base::lens::LensGrid;
 use crate::library::environment::EnvironmentMap;
-use crate::library::mesh::Mesh;
+use crate::library::mesh::{Cutout, Mesh};
 use crate::library::texture::Texture;
 
 /// From the sensor's light to that of the display, as the scene names it.
@@ -96,6 +96,8 @@ pub struct Draw {
     pub material: u32,
     /// Back faces are drawn too, their normals turned round.
     pub double_sided: bool,
+    /// Which part of the triangles there is, where that is not all; shadows are those of all.
+    pub cutout: Option<Cutout>,
 }
 
 /// A metallic-roughness surface with up to four masked layers.

@@ -41,6 +41,7 @@ pub fn add_one(drawing: &mut Drawing, object: &Object) -> Result<Option<u32>, Dr
         triangles: 0..mesh.triangles.len() as u32,
         material,
         double_sided: false,
+        cutout: None,
     });
     list.objects.push(abi::DrawObject {
         mesh,

@@ -206,6 +206,7 @@ fn add_mesh(
             triangles: part.triangles.clone(),
             material,
             double_sided: part.double_sided,
+            cutout: part.cutout,
         });
     }
     let first = list.palette.len() as u32;

@@ -10,9 +10,10 @@ use glam::Vec3;
 use super::cut::{Builder, Surface};
 use super::garment::step;
 use super::hair::Head;
-use super::hair::strand::{Dice, Path, Ribbon};
+use super::hair::strand::{Dice, End, Path, Ribbon};
+use super::hair::{is_cut, strands};
 use crate::library::figure::{self, Figure, GroupId, Whiskers};
-use crate::library::mesh::SkinVertex;
+use crate::library::mesh::{Cutout, SkinVertex};
 use crate::scene::BeardStyle;
 
 /// What of the figure's fields a style is.
@@ -33,6 +34,12 @@ const fn form(style: BeardStyle) -> (f32, f32, f32, f32) {
         BeardStyle::Goatee => (0.0030, 0.010, 0.020, 70_000.0),
         _ => (0.0045, 0.012, 0.026, 42_000.0),
     }
+}
+
+/// What is cut out of the locks at a level of detail.
+pub(super) fn cutout(style: BeardStyle, lod: usize) -> Option<Cutout> {
+    let (_, _, high, _) = form(style);
+    strands(lod, 0.5 * high)
 }
 
 /// Adds a beard: the ranges of the shell and of its locks.
@@ -124,7 +131,7 @@ fn add_locks(builder: &mut Builder, head: &Head, shell: &Surface<'_>, field: &[f
                 tilt: dice.range(-0.4, 0.4),
                 round: 0.5,
                 u: dice.unit() * 4.0,
-                tuft: false,
+                end: if is_cut(head.lod) { End::Cut } else { End::Point },
             };
             ribbon.add(&mut builder.mesh, &path, &|_| skin);
         }

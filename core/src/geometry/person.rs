@@ -18,7 +18,7 @@ use super::shown::Shown;
 use super::{beard, clothes, glasses, hair, headwear, lashes, phenotype};
 use crate::base::hash::Hasher;
 use crate::library::figure::{Figure, GroupId, LOD_COUNT};
-use crate::library::mesh::{Mesh, SkinVertex};
+use crate::library::mesh::{Cutout, Mesh, SkinVertex};
 use crate::scene::{BeardStyle, Body, Glasses, HairStyle, HeadwearKind, Look, Outfit, Person};
 
 /// What a part of a person is.
@@ -69,6 +69,8 @@ pub struct Part {
     pub triangles: Range<u32>,
     /// Its back can be seen, through an opening of the cloth.
     pub double_sided: bool,
+    /// Which part of the triangles there is, where that is not all.
+    pub cutout: Option<Cutout>,
 }
 
 /// A dressed person at rest.
@@ -157,8 +159,16 @@ pub(super) struct Parts {
 
 impl Parts {
     pub fn add(&mut self, kind: PartKind, triangles: Range<u32>, double_sided: bool) {
-        if !triangles.is_empty() {
-            self.parts.push(Part { kind, triangles, double_sided });
+        self.push(Part { kind, triangles, double_sided, cutout: None });
+    }
+
+    fn add_strands(&mut self, kind: PartKind, triangles: Range<u32>, cutout: Option<Cutout>) {
+        self.push(Part { kind, triangles, double_sided: true, cutout });
+    }
+
+    fn push(&mut self, part: Part) {
+        if !part.triangles.is_empty() {
+            self.parts.push(part);
         }
     }
 }
@@ -294,13 +304,14 @@ fn add_head(
     // Hair without locks has no light ones beside which it would have to be dark.
     let plain = locks.is_empty() && light.is_empty();
     out.add(if plain { PartKind::Locks } else { PartKind::Hair }, base, true);
-    out.add(PartKind::Locks, locks, true);
-    out.add(PartKind::LightLocks, light, true);
+    let cutout = hair::cutout(look.hair, lod);
+    out.add_strands(PartKind::Locks, locks, cutout);
+    out.add_strands(PartKind::LightLocks, light, cutout);
     if !shaven {
         let [base, locks] =
             beard::add(&mut out.builder, figure, &head, look.beard, &skin.surface());
         out.add(PartKind::Hair, base, true);
-        out.add(PartKind::Locks, locks, true);
+        out.add_strands(PartKind::Locks, locks, beard::cutout(look.beard, lod));
     }
     let range = headwear::add(&mut out.builder.mesh, &head);
     out.add(PartKind::Headwear, range, true);

@@ -48,6 +48,40 @@ impl Mesh {
     }
 }
 
+/// Strips of a mesh that show strands side by side instead of a whole surface, as of hair.
+///
+/// Over the texture coordinates, strand `k = floor(n u)` with `n` strands to 1 of u lies round the
+/// middle of its share and ends before `v = 0`, where each has another end and width: with the bytes
+/// `e` and `w` of a hash of `k`, `E = 0.75 e / 256` and `H = 0.30 + 0.32 w / 256`, there is something
+/// where
+///
+/// ```text
+/// |n u - k - 1/2| < H min(1, (v / frayed - E) / (1 - E))
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Cutout {
+    /// Strands to 1 of u, 1..=1023.
+    pub strands_per_u: u16,
+    /// Below which v strands become narrower, 1/1024.
+    pub frayed_1024ths: u16,
+}
+
+impl Cutout {
+    /// Factor of the hash: its bytes from bit 16 and from bit 24 on are `e` and `w` (of the golden
+    /// ratio, so that neighbours differ).
+    pub const MULTIPLIER: u32 = 0x9e37_79b1;
+    /// `E` by `e`.
+    pub const END: f32 = 0.75 / 256.0;
+    /// `H` at 0 and by `w`.
+    pub const HALF: [f32; 2] = [0.30, 0.32 / 256.0];
+
+    /// Below which v strands become narrower.
+    #[must_use]
+    pub fn frayed_v(self) -> f32 {
+        f32::from(self.frayed_1024ths.max(1)) / 1024.0
+    }
+}
+
 /// Three vertex indices in 8 bytes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(transparent)]

@@ -6,10 +6,12 @@
 use std::ops::Range;
 
 use super::bin::{Bins, ChunksByTile};
+use super::cutout::CutPlanes;
 use super::shadow::Bounds;
 use super::skin::Placed;
 use crate::draw::DrawList;
 use crate::engine::EngineError;
+use crate::library::mesh::Cutout;
 
 /// Triangles of a mesh that make a chunk.
 const CHUNK: u32 = 4096;
@@ -89,12 +91,16 @@ pub(super) struct Chunk {
     pub(super) mirrored: bool,
     /// Back faces are drawn, too.
     pub(super) double_sided: bool,
+    /// Which part of the triangles there is.
+    pub(super) cutout: Option<Cutout>,
     /// Samples of the draw in one pixel may share their shading.
     pub(super) smooth: bool,
     /// Triangles that may cover samples.
     pub(super) triangles: Vec<Triangle>,
     /// For each of `triangles`; empty where nothing is shaded.
     pub(super) faces: Vec<Face>,
+    /// For each of `triangles` where there is a cutout that samples look at.
+    pub(super) cuts: Vec<CutPlanes>,
     /// Which triangles touch which tile.
     pub(super) bins: Bins,
     /// Triangles of the mesh that need clipping.
@@ -148,6 +154,7 @@ impl ChunkList {
             chunk.first_vertex = placed.first_vertex[object] as u32;
             chunk.mirrored = placed.mirrored[object];
             chunk.double_sided = draw.double_sided;
+            chunk.cutout = draw.cutout;
             chunk.smooth = list.objects[object].smooth;
         }
         Ok(())

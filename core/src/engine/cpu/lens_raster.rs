@@ -5,6 +5,7 @@
 //! decide ties alike, so that no crack opens between neighbours.
 
 use super::chunk::{Chunk, NOTHING, Triangle, first_id};
+use super::cutout::Cut;
 use super::lens::LensTile;
 use super::raster::Blocks;
 use super::samples::{BLOCK, Layout, RASTER_BITS};
@@ -48,7 +49,9 @@ fn raster_body<const AVX2: bool, const S: usize>(
                 continue;
             }
             let id = first_id(index as usize) + t;
-            raster_triangle::<AVX2, S>(triangle, id, rect, blocks, lens, (depth, ids, farthest));
+            let (from, samples) = ((triangle, id), (&mut *depth, &mut *ids, &mut *farthest));
+            let cut = Cut::of(chunk, t as usize);
+            raster_triangle::<AVX2, S>(from, cut, rect, blocks, lens, samples);
         }
     }
 }
@@ -129,8 +132,8 @@ fn cover(edges: &Edges, at: &[i64; 3], width: i32, height: i32) -> Cover {
 
 #[inline(always)]
 fn raster_triangle<const AVX2: bool, const S: usize>(
-    t: &Triangle,
-    id: u32,
+    (t, id): (&Triangle, u32),
+    cut: Option<Cut<'_>>,
     rect: [i32; 4],
     Blocks([bx0, bx1, by0, by1]): Blocks,
     lens: &LensTile,
@@ -183,7 +186,12 @@ fn raster_triangle<const AVX2: bool, const S: usize>(
                 let new_depth = F32x8::splat(block_depth)
                     + F32x8::splat(slope_x) * x.to_f32()
                     + F32x8::splat(slope_y) * y.to_f32();
-                let wins = inside & new_depth.gt(old_depth);
+                let mut wins = inside & new_depth.gt(old_depth);
+                if let (true, Some(cut)) = (wins.any(), &cut) {
+                    let corner_px = [left, top].map(|v| f64::from(v) * PX);
+                    let units = F32x8::splat(PX as f32);
+                    wins = wins & cut.leaves(corner_px, [x.to_f32() * units, y.to_f32() * units]);
+                }
                 let kept = wins.select(new_depth, old_depth);
                 kept.store(&mut depth[block][from..]);
                 let ids = &mut ids[block][from..from + LANES];

@@ -20,6 +20,7 @@
 mod bin;
 mod chunk;
 mod clip;
+mod cutout;
 mod develop;
 mod display;
 mod fragment;

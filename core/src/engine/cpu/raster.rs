@@ -6,6 +6,7 @@
 //! sample, so that what lies wholly behind is skipped.
 
 use super::chunk::{Chunk, NOTHING, Triangle, first_id};
+use super::cutout::Cut;
 use super::samples::{BLOCK, Layout, RASTER_BITS};
 use super::simd::{F32x8, I32x8, LANES, kernel};
 
@@ -62,22 +63,17 @@ fn raster_body<const AVX2: bool, const S: usize, const IDS: bool, const SIDE: us
             let id = first_id(index as usize) + t;
             let mut edges = Edges::new::<S>(triangle, origin_px);
             let last_step = SIDE as i32 * Layout::<S>::GRID_PER_PX - 1;
-            if triangle.large && !edges.forgotten_inside(last_step) {
-                raster_triangle::<AVX2, S, IDS, SIDE, true>(
-                    triangle,
-                    id,
-                    origin_px,
-                    (&edges, blocks),
-                    (depth, ids, farthest),
-                );
-            } else {
-                raster_triangle::<AVX2, S, IDS, SIDE, false>(
-                    triangle,
-                    id,
-                    origin_px,
-                    (&edges, blocks),
-                    (depth, ids, farthest),
-                );
+            let is_large = triangle.large && !edges.forgotten_inside(last_step);
+            let from = Source { triangle, id, cut: Cut::of(chunk, t as usize) };
+            let at = (origin_px, &edges, blocks);
+            let into = (&mut *depth, &mut *ids, &mut *farthest);
+            match (is_large, IDS && from.cut.is_some()) {
+                (true, true) => raster_triangle::<AVX2, S, IDS, SIDE, true, true>(from, at, into),
+                (true, false) => raster_triangle::<AVX2, S, IDS, SIDE, true, false>(from, at, into),
+                (false, true) => raster_triangle::<AVX2, S, IDS, SIDE, false, true>(from, at, into),
+                (false, false) => {
+                    raster_triangle::<AVX2, S, IDS, SIDE, false, false>(from, at, into);
+                }
             }
         }
     }
@@ -173,6 +169,13 @@ impl Edges {
     }
 }
 
+/// A triangle, its id, and what is cut out of it.
+struct Source<'a> {
+    triangle: &'a Triangle,
+    id: u32,
+    cut: Option<Cut<'a>>,
+}
+
 #[inline(always)]
 fn raster_triangle<
     const AVX2: bool,
@@ -180,11 +183,10 @@ fn raster_triangle<
     const IDS: bool,
     const SIDE: usize,
     const LARGE: bool,
+    const CUT: bool,
 >(
-    t: &Triangle,
-    id: u32,
-    origin_px: [i32; 2],
-    (edges, blocks): (&Edges, Blocks),
+    Source { triangle: t, id, cut }: Source<'_>,
+    (origin_px, edges, blocks): ([i32; 2], &Edges, Blocks),
     (depth, ids, farthest): (&mut [[f32; BLOCK]], &mut [[u32; BLOCK]], &mut [f32]),
 ) {
     let block_px = Layout::<S>::BLOCK_PX;
@@ -242,7 +244,13 @@ fn raster_triangle<
                 let inside = (I32x8::splat(at[0]) + lane_edges[half][0])
                     | (I32x8::splat(at[1]) + lane_edges[half][1])
                     | (I32x8::splat(at[2]) + lane_edges[half][2]);
-                let wins = inside.gt(I32x8::splat(-1)) & new_depth.gt(old_depth);
+                let mut wins = inside.gt(I32x8::splat(-1)) & new_depth.gt(old_depth);
+                if let (true, Some(cut)) = (CUT && wins.any(), &cut) {
+                    let corner_px =
+                        [origin_px[0] + bx * block_px, origin_px[1] + by * block_px].map(f64::from);
+                    let (x, y) = lane_px::<AVX2, S>(half);
+                    wins = wins & cut.leaves(corner_px, [x, y]);
+                }
                 let kept = wins.select(new_depth, old_depth);
                 kept.store(&mut depth[block][from..]);
                 if IDS {

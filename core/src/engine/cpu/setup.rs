@@ -4,6 +4,7 @@
 //! columns of samples. Triangles with a vertex that could not be projected go to [`super::clip`].
 
 use super::chunk::{Chunk, DepthPlane, Face, Triangle};
+use super::cutout::CutPlanes;
 use super::project::{Projection, SCREEN_BITS, ScreenVertex, Vertex};
 use super::samples::{Layout, RASTER_BITS, TILE};
 use super::shadow::SunAxes;
@@ -38,6 +39,8 @@ pub(super) struct Target<'a> {
     pub(super) row_step_log2: u32,
     /// Whether the triangles will be shaded.
     pub(super) shaded: bool,
+    /// Whether samples look at cutouts.
+    pub(super) cuts: bool,
     /// Axes along which to bound what is seen, for the fit of a shadow map.
     pub(super) sun: Option<&'a SunAxes>,
     /// Where in the picture the samples of a lens's plane stand; without a lens they stand where
@@ -60,6 +63,7 @@ impl<'a> Target<'a> {
             first_row: Layout::<S>::FIRST_ROW,
             row_step_log2: Layout::<S>::ROW_STEP_LOG2,
             shaded: false,
+            cuts: true,
             sun: None,
             squares: None,
         }
@@ -86,7 +90,8 @@ impl<'a> Target<'a> {
         screen: &'a [ScreenVertex],
         projection: &'a Projection,
     ) -> Self {
-        Self { tile_log2: shadow::TILE.ilog2(), ..Self::picture::<1>(vertices, screen, projection) }
+        let tile_log2 = shadow::TILE.ilog2();
+        Self { tile_log2, cuts: false, ..Self::picture::<1>(vertices, screen, projection) }
     }
 }
 
@@ -103,6 +108,7 @@ fn set_up_body<const AVX2: bool>(
 ) {
     chunk.triangles.clear();
     chunk.faces.clear();
+    chunk.cuts.clear();
     chunk.crossing.clear();
     chunk.border.clear();
     chunk.bins.clear();
@@ -313,6 +319,10 @@ impl Chunk {
         if target.shaded {
             let normal = facing(&triangle.plane, target.projection);
             self.faces.push(Face { corners, normal });
+        }
+        if target.cuts && self.cutout.is_some() {
+            let corners = corners.map(|c| &target.vertices[c as usize]);
+            self.cuts.push(CutPlanes::new(corners, target.projection));
         }
         self.bins.add(&triangle.pixels, target.tile_log2);
         self.triangles.push(triangle);

@@ -61,6 +61,11 @@ impl Placed {
         self.palette.clear();
         self.palette.extend(list.palette.iter().map(columns));
         let palette = &self.palette;
+        // Cutouts need texture coordinates, which come with the normals.
+        let mut whole = vec![with_normals; list.objects.len()];
+        for draw in list.draws.iter().filter(|draw| draw.cutout.is_some()) {
+            whole[draw.object as usize] = true;
+        }
         let batches = batches(&self.first_vertex, &mut self.vertices, &mut self.screen);
         let bad = batches
             .into_par_iter()
@@ -76,7 +81,7 @@ impl Placed {
                     Motion::Skinned(&palette[range], &object.mesh.skin)
                 };
                 let (mesh, first) = (&*object.mesh, batch.first);
-                let finite = if with_normals {
+                let finite = if whole[batch.object as usize] {
                     move_all::<true>(
                         level,
                         mesh,

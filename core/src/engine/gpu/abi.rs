@@ -89,6 +89,7 @@ pub struct TriangleBatch {
     pub order: u32,
     pub mirrored: u32,
     pub double_sided: u32,
+    pub cutout: u32,
 }
 
 /// A placed vertex.
@@ -227,6 +228,8 @@ pub const VERTEX_BATCH: u32 = 256;
 pub const TRIANGLE_BATCH: u32 = 64;
 /// Workgroups along x of a stage with one for each batch.
 pub const BATCHES_ACROSS: u32 = 32_768;
+/// [`Primitive::flags`]: where the cutout begins.
+pub const CUTOUT_SHIFT: u32 = 2;
 /// Side of a tile in pixels.
 pub const TILE: u32 = 8;
 /// Point lights that there is room for.

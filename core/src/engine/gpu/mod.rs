@@ -483,7 +483,11 @@ impl State {
         shadow: bool,
         band: Band,
     ) -> Result<(), EngineError> {
-        let target = pack::picture_target(list, &self.packed, band.first_y, band.rows);
+        let mut target = pack::picture_target(list, &self.packed, band.first_y, band.rows);
+        if let Some(lens) = self.lens.as_ref().filter(|_| list.lens.is_some()) {
+            // Samples behind a lens stand in its plane.
+            target.rows = pack::plane_target(lens.plane(), &self.packed).rows;
+        }
         self.buffers.write(&self.device, Resource::Target, &[target])?;
         let mut encoder = self.device.device.create_command_encoder(&Default::default());
         let mut recorder = Recorder {
@@ -491,7 +495,11 @@ impl State {
             buffers: &mut self.buffers,
             clock: self.clock.as_mut(),
             encoder: &mut encoder,
-            variant: Variant { samples: list.samples, light: Light::of(&self.packed.frame) },
+            variant: Variant {
+                samples: list.samples,
+                light: Light::of(&self.packed.frame),
+                cutouts: list.draws.iter().any(|draw| draw.cutout.is_some()),
+            },
             lens: list.lens.is_some(),
             target: &target,
             triangles: self.packed.triangles[0],

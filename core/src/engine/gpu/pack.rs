@@ -1,13 +1,14 @@
 //! Pack: a draw list as the records that the shaders read.
 
 use super::abi::{
-    self, Blocker, DOUBLE_SIDED, Frame, Light, MAP_COLOR, MAP_PRESENT, MIRRORED, SMOOTH, Surface,
-    TRIANGLE_BATCH, Target, TriangleBatch, VERTEX_BATCH, VERTEX_WORDS, VertexBatch,
+    self, Blocker, CUTOUT_SHIFT, DOUBLE_SIDED, Frame, Light, MAP_COLOR, MAP_PRESENT, MIRRORED,
+    SMOOTH, Surface, TRIANGLE_BATCH, Target, TriangleBatch, VERTEX_BATCH, VERTEX_WORDS,
+    VertexBatch,
 };
 use crate::draw::DrawList;
 use crate::draw::abi::{Grade, Material, ToneCurve, View};
 use crate::engine::{noise, pattern};
-use crate::library::mesh::Mesh;
+use crate::library::mesh::{Cutout, Mesh};
 use crate::library::texture::{Encoding, Texture};
 
 /// Which objects a frame needs, and for what.
@@ -182,6 +183,7 @@ impl Packed {
                         order: *order,
                         mirrored: is_mirrored(list, draw.object).into(),
                         double_sided: draw.double_sided.into(),
+                        cutout: draw.cutout.map_or(0, cutout),
                     });
                     *order += count;
                 }
@@ -189,6 +191,12 @@ impl Packed {
         }
         self.triangles = [picture, sun];
     }
+}
+
+/// A cutout as flags of a primitive.
+fn cutout(cutout: Cutout) -> u32 {
+    let strands = u32::from(cutout.strands_per_u).min(1023);
+    (strands | u32::from(cutout.frayed_1024ths.max(1)) << 10) << CUTOUT_SHIFT
 }
 
 /// The plane behind a lens that the picture's triangles are set up in. Samples may lie anywhere in it.

@@ -277,6 +277,7 @@ impl Stage {
                 (R::Tiles, Read),
                 (R::Lists, Read),
                 (R::Samples, Write),
+                (R::Vertices, Read),
             ],
             Self::LensRaster => &[
                 (R::Frame, Uniform),
@@ -286,6 +287,7 @@ impl Stage {
                 (R::Tiles, Read),
                 (R::Lists, Read),
                 (R::Samples, Write),
+                (R::Vertices, Read),
                 (R::Places, Read),
             ],
             Self::Shadow => &[
@@ -396,10 +398,8 @@ impl Stage {
                 &[ABI, WIDE, EDGE, file!("shared/lens_tiles.wgsl"), file!("bin.wgsl")]
             }
             Self::Scan => &[ABI, file!("scan.wgsl")],
-            Self::Raster => &[ABI, WIDE, EDGE, KEPT, RASTER, file!("raster.wgsl")],
-            Self::LensRaster => {
-                &[ABI, WIDE, EDGE, KEPT, file!("shared/lens_raster.wgsl"), file!("raster.wgsl")]
-            }
+            Self::Raster => &[ABI, WIDE, EDGE, CUTOUT, KEPT, RASTER, file!("raster.wgsl")],
+            Self::LensRaster => &[ABI, WIDE, EDGE, CUTOUT, KEPT, LENS_RASTER, file!("raster.wgsl")],
             Self::Shadow => &[ABI, WIDE, EDGE, file!("shadow.wgsl")],
             Self::Resolve => &[ABI, file!("resolve.wgsl")],
             Self::Reduce => &[ABI, file!("reduce.wgsl")],
@@ -446,7 +446,9 @@ const BOUNDS: File = file!("shared/bounds.wgsl");
 const TRIANGLE: File = file!("shared/triangle.wgsl");
 const EDGE: File = file!("shared/edge.wgsl");
 const KEPT: File = file!("shared/kept.wgsl");
+const CUTOUT: File = file!("shared/cutout.wgsl");
 const RASTER: File = file!("shared/raster.wgsl");
+const LENS_RASTER: File = file!("shared/lens_raster.wgsl");
 
 #[cfg(test)]
 mod tests;

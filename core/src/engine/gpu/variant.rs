@@ -20,6 +20,8 @@ pub struct Variant {
     pub samples: u32,
     /// What shading must know of.
     pub light: Light,
+    /// Whether anything is cut out of triangles.
+    pub cutouts: bool,
 }
 
 /// Kinds of light in a frame.
@@ -60,18 +62,22 @@ impl Variant {
         Self {
             samples: if stage.by_samples() { self.samples } else { 1 },
             light: if shades { self.light } else { Light::default() },
+            cutouts: self.cutouts && matches!(stage, Stage::Raster | Stage::LensRaster),
         }
     }
 
-    /// Those of a stage: all numbers of samples; of lights none and all, with each tone curve.
+    /// Those of a stage: all numbers of samples; of lights none and all, with each tone curve; without
+    /// and with cutouts.
     pub fn all(stage: Stage) -> impl Iterator<Item = Self> {
-        let of = move |(samples, light)| Self { samples, light }.of(stage);
+        let of = move |(samples, light, cutouts)| Self { samples, light, cutouts }.of(stage);
         let lights = (0..2 * TONE_CURVES).map(|k| {
             let all = k % 2 == 1;
             let [environment, blockers, sun, shadow, noise] = [all; 5];
             Light { environment, blockers, sun, shadow, noise, tone_curve: k / 2 }
         });
-        let every = lights.flat_map(|light| SAMPLES.map(|samples| (samples, light)));
+        let every = lights.flat_map(|light| {
+            SAMPLES.map(|n| [(n, light, false), (n, light, true)]).into_iter().flatten()
+        });
         let mut variants: Vec<Self> = every.map(of).collect();
         variants.sort_unstable();
         variants.dedup();
@@ -80,7 +86,7 @@ impl Variant {
 
     /// The constants in front of a shader.
     pub fn constants(self) -> String {
-        let Self { samples, light } = self;
+        let Self { samples, light, cutouts } = self;
         let positions: Vec<String> = pattern::positions(samples)
             .iter()
             .map(|[x, y]| format!("vec2<i32>({x}, {y})"))
@@ -101,6 +107,7 @@ impl Variant {
              const HAS_SUN: bool = {sun};\n\
              const HAS_SHADOW: bool = {shadow};\n\
              const HAS_NOISE: bool = {noise};\n\
+             const HAS_CUTOUTS: bool = {cutouts};\n\
              const TONE_CURVE: u32 = {tone_curve}u;\n",
             positions.join(", "),
             1 << (10 - grid_log2),

@@ -124,7 +124,7 @@ fn ponytail_locks(grower: &Grower<'_>, mesh: &mut Mesh, tone: usize) {
             tilt: dice.range(-0.4, 0.4),
             round: 0.55,
             u: dice.unit() * 4.0,
-            tuft: false,
+            end: grower.end(false),
         };
         ribbon.add(mesh, &piece.resampled(points), &|p| grower.head.hanging(p));
     }
@@ -170,7 +170,7 @@ fn bun_locks(grower: &Grower<'_>, mesh: &mut Mesh, tone: usize) {
             tilt: dice.range(-0.25, 0.25),
             round: 0.6,
             u: dice.unit() * 4.0,
-            tuft: false,
+            end: grower.end(false),
         };
         ribbon.add(mesh, &path, &|_| grower.head.on_head());
     }
@@ -240,7 +240,7 @@ fn braid(grower: &Grower<'_>, mesh: &mut Mesh, side: f32, sides: usize) {
             tilt: 0.0,
             round: 0.5,
             u: dice.unit() * 4.0,
-            tuft: false,
+            end: grower.end(false),
         };
         ribbon.add(mesh, &path, &hanging);
     }

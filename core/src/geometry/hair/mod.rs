@@ -1,10 +1,10 @@
 //! Hair on the head: a cap on the scalp, locks combed over it, and what hangs down.
 //!
 //! A person's scalp and skin flow in, triangles flow out, in three ranges: what lies underneath,
-//! the locks, and those among them that catch the light, so that each can have its own tone. There
-//! is no transparency: locks are ribbons with pointed ends that reach beyond the cap's border.
-//! Coarser levels of detail have fewer and wider ones, the coarsest the cap alone. Colours are not
-//! decided here.
+//! the locks, and those among them that catch the light, so that each can have its own tone. From
+//! near, locks are ribbons out of which a [`Cutout`] leaves single strands, and so is a seam over the
+//! cap's border; at coarser levels of detail they are fewer and wider, and pointed, and the coarsest
+//! has the cap alone. Colours are not decided here.
 //!
 //! | file | what it does |
 //! |---|---|
@@ -20,27 +20,25 @@ pub(super) mod scalp;
 pub(super) mod strand;
 mod style;
 
-use std::ops::{Range, RangeInclusive};
+use std::ops::Range;
 
 use glam::Vec3;
 
 use self::near::Near;
 use self::scalp::{COLUMNS, ROWS, Root, Scalp};
-use self::strand::{Comb, Dice, Path, Ribbon, UV_PER_M, push};
+use self::strand::{Comb, Dice, End, Path, Ribbon, UV_PER_M, push};
 use self::style::{Form, Length, Locks, Tail};
 use super::body::RestBody;
 use super::garment::step;
 use crate::base::hash::Hasher;
 use crate::library::figure::Figure;
-use crate::library::mesh::{Mesh, SkinVertex, Triangle};
+use crate::library::mesh::{Cutout, Mesh, SkinVertex, Triangle};
 use crate::scene::{HairStyle, HeadwearKind, Person};
 
 /// Locks by level of detail: share of the finest count, width, and share of the points.
-const LEVELS: [(f32, f32, f32); 3] = [(0.6, 1.25, 0.85), (0.22, 1.9, 0.6), (0.1, 2.6, 0.5)];
-/// At the finest level a lock of so many points is drawn as so many strands; those of more are curls,
-/// which are no planks and would take too much memory.
-const STRANDED: RangeInclusive<usize> = 4..=16;
-const STRANDS: usize = 3;
+const LEVELS: [(f32, f32, f32); 3] = [(0.7, 1.4, 1.3), (0.25, 2.1, 0.8), (0.1, 2.6, 0.5)];
+/// Width of a strand of a cutout by level of detail, metres; coarser levels have none.
+const STRAND_M: [f32; 2] = [0.0011, 0.0020];
 /// Roots start a little under the skin.
 const SUNK_M: f32 = 0.0014;
 
@@ -90,10 +88,12 @@ impl Head {
 
     /// Weights of what hangs from it: the lower, the more it follows neck and upper back.
     pub fn hanging(&self, p: Vec3) -> SkinVertex {
-        let y = self.scalp.frame.local(p).y;
-        let low = 1.0 - step(0.55, 0.68, y);
-        let neck = (70.0 * low) as u8;
-        let back = (60.0 * low + 90.0 * (1.0 - step(0.47, 0.58, y))) as u8;
+        let at = self.scalp.frame.local(p);
+        // Beside the face it keeps to the face for longer.
+        let top = 0.68 + 0.10 * step(0.08, 0.0, at.z);
+        let low = 1.0 - step(top - 0.14, top, at.y);
+        let back = low * (1.0 - step(0.50, 0.64, at.y));
+        let (neck, back) = ((210.0 * (low - back)) as u8, (225.0 * back) as u8);
         SkinVertex {
             joints: [self.joints[0], self.joints[1], self.joints[2], 0],
             weights: [255 - neck - back, neck, back, 0],
@@ -127,6 +127,26 @@ fn seed(person: &Person) -> u64 {
     hasher.finish().iter().take(8).fold(0, |all, byte| all << 8 | u64::from(*byte))
 }
 
+/// Whether locks have a cutout at a level of detail.
+pub(super) const fn is_cut(lod: usize) -> bool {
+    lod < STRAND_M.len()
+}
+
+/// The cutout of locks at a level of detail, their strands ending over such a length.
+pub(super) fn strands(lod: usize, frayed_m: f32) -> Option<Cutout> {
+    let strand_m = STRAND_M.get(lod)?;
+    Some(Cutout {
+        strands_per_u: (1.0 / (UV_PER_M[0] * strand_m)) as u16,
+        frayed_1024ths: (1024.0 * UV_PER_M[1] * frayed_m) as u16,
+    })
+}
+
+/// What is cut out of the locks of a style at a level of detail.
+pub(super) fn cutout(style: HairStyle, lod: usize) -> Option<Cutout> {
+    let locks = style::form(style)?.locks?;
+    strands(lod, locks.length.frayed_m())
+}
+
 /// Adds a person's hair: the ranges of what lies underneath, of the locks, and of the light ones.
 pub(super) fn add(mesh: &mut Mesh, head: &Head, style: HairStyle) -> [Range<u32>; 3] {
     let start = mesh.triangles.len() as u32;
@@ -144,6 +164,9 @@ pub(super) fn add(mesh: &mut Mesh, head: &Head, style: HairStyle) -> [Range<u32>
         let areas = locks.map(|_| head.scalp.areas(|root| grower.density(root)));
         for (tone, end) in [(0, 1), (1, 2)] {
             if let (Some(locks), Some(areas)) = (locks, &areas) {
+                if tone == 0 && is_cut(head.lod) {
+                    grower.hairline(mesh, locks.length.frayed_m());
+                }
                 grower.locks(mesh, locks, tone, areas);
                 gathered::add_locks(&grower, mesh, tone);
             }
@@ -354,14 +377,61 @@ impl Grower<'_> {
                 tilt: dice.range(-tilt, tilt),
                 round: 0.55,
                 u: dice.unit() * 4.0,
-                tuft: locks.tuft,
+                end: self.end(locks.tuft),
             };
-            if self.head.lod == 0 && STRANDED.contains(&points) {
-                strands(mesh, &ribbon, &path, &mut dice, &skin);
-            } else {
-                ribbon.add(mesh, &path, &skin);
-            }
+            ribbon.add(mesh, &path, &skin);
         }
+    }
+
+    /// How ribbons end that are tufts or not.
+    fn end(&self, tuft: bool) -> End {
+        match (is_cut(self.head.lod), tuft) {
+            (true, _) => End::Cut,
+            (false, true) => End::Tuft,
+            (false, false) => End::Point,
+        }
+    }
+
+    /// A seam over the cap's border out of which strands are cut: hair begins here and there, not
+    /// along a line. Its strands end around the border whatever the length of the locks'.
+    fn hairline(&self, mesh: &mut Mesh, frayed_m: f32) {
+        const ROWS_OF_SEAM: [f32; 3] = [12.4, 13.7, 15.0];
+        const BEYOND_M: f32 = 0.0045;
+        const FRAYED_M: f32 = 0.012;
+        let s = self.scale();
+        let skip = [1, 2][self.head.lod];
+        let (mut points, mut uvs, mut bare) = (Vec::<Vec3>::new(), Vec::new(), Vec::new());
+        let mut u = 0.0;
+        for column in (0..=COLUMNS).step_by(skip) {
+            let roots = ROWS_OF_SEAM.map(|row| self.head.scalp.at(row, column as f32));
+            let mut line = roots.map(|r| r.p + r.n * (self.cap_m(&r) + 0.0008 * s)).to_vec();
+            let border = &roots[2];
+            let ahead = (border.p - roots[1].p).normalize_or(Vec3::NEG_Y);
+            let mut end = border.p + ahead * (BEYOND_M * s);
+            if let Some((d, n)) = self.head.near.surface(end) {
+                end += n * (0.0008 * s - d);
+            }
+            line.push(end);
+            if let Some(before) = points.len().checked_sub(2) {
+                u += (line[2] - points[before]).length() * UV_PER_M[0];
+            }
+            let mut left_m = 0.0;
+            let mut v = [0.0; 4];
+            for i in (0..3).rev() {
+                left_m += (line[i + 1] - line[i]).length();
+                v[i] = left_m / (FRAYED_M * s) * frayed_m * UV_PER_M[1];
+            }
+            points.extend(line);
+            uvs.extend(v.map(|v| [u, v]));
+            bare.push(self.density(border) <= 0.0);
+        }
+        let start = mesh.triangles.len();
+        let first = mesh.positions.len() as u32;
+        add_grid(mesh, &points, &uvs, ROWS_OF_SEAM.len() + 1, false, &|_| self.head.on_head());
+        let column = |v: u32| (v - first) as usize / (ROWS_OF_SEAM.len() + 1);
+        let added = mesh.triangles.split_off(start);
+        mesh.triangles
+            .extend(added.into_iter().filter(|t| !t.get().iter().any(|&v| bare[column(v)])));
     }
 
     fn density(&self, root: &Root) -> f32 {
@@ -472,32 +542,6 @@ pub(super) fn add_grid(
                 mesh.triangles.push(Triangle::new([a, c, b]));
             }
         }
-    }
-}
-
-/// Adds a lock as a few strands side by side that part towards their ends, each of its own length:
-/// from near by a broad ribbon looks like a plank.
-fn strands(
-    mesh: &mut Mesh,
-    lock: &Ribbon,
-    path: &Path,
-    dice: &mut Dice,
-    skin: &dyn Fn(Vec3) -> SkinVertex,
-) {
-    for k in 0..STRANDS {
-        let across = (k as f32 + 0.5) / STRANDS as f32 - 0.5;
-        let beside_m = lock.width_m * (0.85 * across + dice.range(-0.12, 0.12));
-        let off_m = lock.width_m * dice.range(-0.05, 0.25);
-        let share = dice.range(0.86, 1.0);
-        let strand = Ribbon {
-            width_m: lock.width_m * 1.35 / STRANDS as f32 * dice.range(0.7, 1.2),
-            root: lock.root.min(0.5),
-            tilt: lock.tilt + dice.range(-0.3, 0.3),
-            u: lock.u + across * lock.width_m * UV_PER_M[0],
-            tuft: false,
-            ..*lock
-        };
-        strand.add(mesh, &path.beside(beside_m, off_m, share), skin);
     }
 }
 

@@ -1,4 +1,4 @@
-//! Locks of hair: a line combed over the head, and the pointed ribbon or tube along it.
+//! Locks of hair: a line combed over the head, and the ribbon or tube along it.
 
 use glam::Vec3;
 
@@ -62,13 +62,8 @@ impl Path {
     /// The same line by so many points, closer together where it bends: straight pieces between few
     /// points would run through the head.
     pub fn resampled(&self, count: usize) -> Self {
-        self.resampled_within(1.0, count)
-    }
-
-    /// A share of it from its beginning by so many points.
-    fn resampled_within(&self, share: f32, count: usize) -> Self {
         let mut out = Self::with_room(count);
-        let total = share * (0..self.points.len() - 1).map(|i| self.piece(i)).sum::<f32>();
+        let total = (0..self.points.len() - 1).map(|i| self.piece(i)).sum::<f32>();
         let (mut i, mut before) = (0, 0.0);
         for k in 0..count {
             let wanted = total * k as f32 / (count - 1) as f32;
@@ -82,21 +77,6 @@ impl Path {
             let t = ((wanted - before) / piece.max(1e-6)).clamp(0.0, 1.0);
             let n = self.outward[i].lerp(self.outward[j], t).normalize_or(self.outward[i]);
             out.push(self.points[i].lerp(self.points[j], t), n);
-        }
-        out
-    }
-
-    /// A line of as many points that leaves this one more and more, to a side and outwards (metres at
-    /// the end), and is so much of its length.
-    pub fn beside(&self, beside_m: f32, off_m: f32, share: f32) -> Self {
-        let last = (self.points.len() - 1).max(1) as f32;
-        let mut out = self.resampled_within(share, self.points.len());
-        for i in 0..out.points.len() {
-            let t = i as f32 / last;
-            let side = out.along(i).cross(out.outward[i]).normalize_or(Vec3::X);
-            // Side by side near the roots already, apart at the ends.
-            let away = step(0.0, 0.3, t) * (0.7 + 0.6 * t);
-            out.points[i] += side * (beside_m * away) + out.outward[i] * (off_m * t);
         }
         out
     }
@@ -218,40 +198,54 @@ pub(in crate::geometry) struct Ribbon {
     pub round: f32,
     /// Where it begins in the texture across.
     pub u: f32,
-    /// It ends in three points instead of one, as a tuft does.
-    pub tuft: bool,
+    /// How it ends.
+    pub end: End,
+}
+
+/// How a ribbon ends.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(in crate::geometry) enum End {
+    /// In a point.
+    Point,
+    /// In three points of unequal length.
+    Tuft,
+    /// Nearly as wide as it is: for a cutout, which leaves single strands of it.
+    Cut,
 }
 
 impl Ribbon {
-    /// Half the width along the line: full at a third, a point at the end.
+    /// Half the width along the line: full at a third, at the end narrower or a point.
     fn half(&self, t: f32) -> f32 {
         let grow = self.root + (1.0 - self.root) * step(0.0, 0.35, t);
-        let point = (1.0 - t) * (1.0 + t * (1.0 + t));
-        0.5 * self.width_m * grow * point.max(0.0).sqrt()
+        let narrow = match self.end {
+            End::Cut => 1.0 - 0.45 * t * t,
+            End::Point | End::Tuft => ((1.0 - t) * (1.0 + t * (1.0 + t))).max(0.0).sqrt(),
+        };
+        0.5 * self.width_m * grow * narrow
     }
 
-    /// Adds the ribbon along a path, its front outwards.
+    /// Adds the ribbon along a path, its front outwards; v of its texture coordinates is 0 at the end.
     pub fn add(&self, mesh: &mut Mesh, path: &Path, skin: &dyn Fn(Vec3) -> SkinVertex) {
         let last = path.points.len() - 1;
-        let (mut way, mut before) = (0.0, [0u32; 2]);
+        let (mut left_m, mut before) = (path.length(), [0u32; 2]);
         let (sin, cos) = (libm::sinf(self.tilt), libm::cosf(self.tilt));
         for i in 0..=last {
             let (p, along) = (path.points[i], path.along(i));
             if i > 0 {
-                way += (p - path.points[i - 1]).length();
+                left_m = (left_m - (p - path.points[i - 1]).length()).max(0.0);
             }
             let flat = along.cross(path.outward[i]).normalize_or(Vec3::X);
             let up = flat.cross(along);
             let (side, up) = (flat * cos + up * sin, up * cos - flat * sin);
-            let uv = |x: f32| [self.u + x * UV_PER_M[0], way * UV_PER_M[1]];
+            let uv = |x: f32| [self.u + x * UV_PER_M[0], left_m * UV_PER_M[1]];
             let joints = skin(p);
-            if i == last && self.tuft {
+            if i == last && self.end == End::Tuft {
                 let half = self.half((last - 1) as f32 / last as f32);
                 let back = p - path.points[last - 1];
                 self.add_tips(mesh, before, (p, back, side * half), up);
                 return;
             }
-            if i == last {
+            if i == last && self.end == End::Point {
                 let tip = push(mesh, p, up, uv(0.0), joints);
                 mesh.triangles.push(Triangle::new([before[0], before[1], tip]));
                 return;
@@ -289,7 +283,7 @@ impl Ribbon {
         for (k, root) in roots.into_iter().enumerate() {
             let short = [0.0, 0.30, 0.16][(k + longest) % 3];
             let tip = end + half * (0.9 * (k as f32 - 1.0)) - way * short;
-            let along = uv[1] + way.length() * (1.0 - short) * UV_PER_M[1];
+            let along = short * way.length() * UV_PER_M[1];
             let tip = push(mesh, tip, up, [uv[0] + k as f32 * 0.02, along], joints);
             mesh.triangles.push(Triangle::new([root[0], root[1], tip]));
         }

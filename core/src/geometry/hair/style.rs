@@ -37,6 +37,23 @@ pub(super) enum Length {
     ToTie,
 }
 
+impl Length {
+    /// Over which length from the end strands end, one here and one there, metres.
+    pub fn frayed_m(self) -> f32 {
+        match self {
+            Self::Between(_, high) => 0.5 * high,
+            Self::Down(y, _) => {
+                if y > 0.6 {
+                    0.035
+                } else {
+                    0.07
+                }
+            }
+            Self::ToTie => 0.03,
+        }
+    }
+}
+
 /// The locks laid over the cap.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Locks {
@@ -253,13 +270,13 @@ pub(super) fn form(style: HairStyle) -> Option<Form> {
             ..none
         },
         HairStyle::Bob => Form {
-            cap: Cap { thick_m: 0.010, taper_m: 0.030, side: 0.8, lump: (0.06, 0.03), ragged: 0.8 },
+            cap: Cap { thick_m: 0.013, taper_m: 0.030, side: 0.8, lump: (0.06, 0.03), ragged: 0.8 },
             locks: Some(Locks {
                 count: 440,
                 length: Length::Down(0.655, 0.012),
                 width_m: 0.0125,
-                clear_m: (0.009, 0.018),
-                layer_m: 0.008,
+                clear_m: (0.010, 0.017),
+                layer_m: 0.005,
                 clings: 0.35,
                 points: 10,
                 flow: Flow::Fall,
@@ -271,13 +288,13 @@ pub(super) fn form(style: HairStyle) -> Option<Form> {
         HairStyle::LongStraight | HairStyle::LongWavy => {
             let wavy = style == HairStyle::LongWavy;
             Form {
-                cap: Cap { thick_m: 0.009, taper_m: 0.030, ragged: 1.0, ..SMOOTH },
+                cap: Cap { thick_m: 0.013, taper_m: 0.030, ragged: 1.0, ..SMOOTH },
                 locks: Some(Locks {
                     count: if wavy { 370 } else { 480 },
                     length: Length::Down(0.46, 0.05),
                     width_m: if wavy { 0.015 } else { 0.0125 },
-                    clear_m: (0.010, 0.020),
-                    layer_m: 0.006,
+                    clear_m: (0.010, 0.017),
+                    layer_m: 0.004,
                     clings: 0.3,
                     curl: wavy.then_some((0.007, 0.085)),
                     points: if wavy { 17 } else { 14 },
