@@ -238,7 +238,7 @@ impl Default for Pose {
         Self {
             enabled: true,
             clip: Choice::Always("any_clip".to_owned()),
-            suits_clothes: true,
+            suits_clothes: false,
             phase: Param::uniform(0.0, 1.0),
             mirrored: Flag::with_probability(0.5),
             variation: Param::Constant(0.0),

@@ -154,8 +154,11 @@ impl Cuts {
             Piece::Shoes => self.shoes(at),
             Piece::Sole => low_shoe(at.p),
             Piece::Socks => self.socks(at).min(0.02 - low_shoe(at.p)),
-            Piece::Collar => collar(self.neck(at.p), at.p, 0.024),
-            Piece::OuterCollar => collar(self.outer_neck(at.p), at.p, 0.026),
+            Piece::Collar => collar(self.neck(at.p), at.p, (0.024, 0.004)),
+            Piece::OuterCollar => {
+                let edge = self.front_half_m(at.p).max(0.004);
+                collar(self.outer_neck(at.p), at.p, (0.026, edge))
+            }
             Piece::Placket => self.placket(at),
             Piece::Pocket => pocket(at),
             Piece::Hood => self.hood(at.p),
@@ -310,9 +313,12 @@ impl Cuts {
 
     /// Half of what the outer garment leaves open in front, as a field.
     pub fn front_gap(&self, p: Vec3) -> f32 {
+        p.x.abs() - self.front_half_m(p) + step(0.05, 0.02, p.z)
+    }
+
+    fn front_half_m(&self, p: Vec3) -> f32 {
         let lapel = step(0.30, 0.52, p.y);
-        let half = if self.open { 0.055 - 0.01 * lapel } else { 0.034 * lapel - 0.01 };
-        p.x.abs() - half + step(0.05, 0.02, p.z)
+        if self.open { 0.055 - 0.01 * lapel } else { 0.034 * lapel - 0.01 }
     }
 
     fn placket(&self, at: Place) -> f32 {
@@ -360,13 +366,13 @@ fn neck(t: f32, p: Vec3) -> f32 {
     0.6 * (radius - r) + 0.8 * (y - p.y)
 }
 
-/// A leaf round the neck with two points in front, `width` at the back. `n` is the distance from
-/// the neckline.
-fn collar(n: f32, p: Vec3, width: f32) -> f32 {
+/// A leaf round the neck with two points in front, `width` at the back, whose ends lie so far from
+/// the middle at the throat. `n` is the distance from the neckline.
+fn collar(n: f32, p: Vec3, (width, end): (f32, f32)) -> f32 {
     let front = step(0.03, 0.085, p.z);
     let points = 0.026 * front * step(0.080, 0.040, p.x.abs());
-    // The two leaves part from where they meet at the throat.
-    let apart = p.x.abs() - 0.004 - 0.45 * n.max(0.0) + step(0.05, 0.02, p.z);
+    // The two leaves part further down.
+    let apart = p.x.abs() - end - 0.45 * n.max(0.0) + step(0.05, 0.02, p.z);
     n.min(width + points - n).min(apart)
 }
 

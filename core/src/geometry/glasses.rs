@@ -16,7 +16,7 @@ use crate::scene::Glasses;
 /// radius of the frame's tube.
 const fn form(kind: Glasses) -> (f32, f32, f32, f32) {
     match kind {
-        Glasses::Sunglasses => (0.0268, 0.0205, 2.9, 0.0019),
+        Glasses::Sunglasses => (0.0262, 0.0190, 2.7, 0.0015),
         Glasses::Thick => (0.0262, 0.0200, 3.4, 0.0021),
         Glasses::Thin | Glasses::None => (0.0250, 0.0205, 2.4, 0.0010),
     }
@@ -85,7 +85,7 @@ impl<'a> Fit<'a> {
         let x = share * self.half[0] * bulge(cos);
         // Lower corners are drawn in.
         let y = share * self.half[1] * bulge(sin);
-        let narrow = if y < 0.0 { 1.0 + 0.10 * y / self.half[1] } else { 1.0 };
+        let narrow = if y < 0.0 { 1.0 + 0.16 * y / self.half[1] } else { 1.0 };
         let x = x * narrow;
         let back = 0.16 * (x + self.half[0]) * (x + self.half[0]) / (2.0 * self.half[0]);
         let p = self.middle + Vec3::new(x, y, -back);

@@ -96,15 +96,17 @@ pub fn surface(kind: PartKind, person: &Person) -> Surface {
         PartKind::Eyes => eye_surface(look),
         PartKind::Teeth => plain([0.78, 0.74, 0.64], 0.25),
         // Between the locks it is darker than on them.
-        PartKind::Hair => hair_surface(look, 0.72),
+        // What lies under the locks has no strands that would shine.
+        PartKind::Hair => Surface { roughness: 0.9, ..hair_surface(look, 0.72) },
         PartKind::Locks => hair_surface(look, 1.0),
         PartKind::LightLocks => hair_surface(look, 1.28),
         PartKind::Headwear => headwear_surface(look),
         PartKind::Frame => match look.glasses {
-            Glasses::Thin => plain([0.16, 0.15, 0.14], 0.25),
-            _ => plain([0.012, 0.011, 0.011], 0.25),
+            // So thin that sharp highlights would be single pixels.
+            Glasses::Thin => plain([0.16, 0.15, 0.14], 0.5),
+            _ => plain([0.012, 0.011, 0.011], 0.6),
         },
-        PartKind::Lenses => plain([0.006, 0.006, 0.007], 0.06),
+        PartKind::Lenses => plain([0.016, 0.012, 0.009], 0.10),
         PartKind::Top => top_surface(top),
         PartKind::Bottom => bottom_surface(bottom),
         PartKind::Outer => {
@@ -347,7 +349,7 @@ fn sewn(cloth: Surface, kind: Sewn, (on, roughness): ([f32; 3], f32)) -> Surface
     let tone = |by: f32| layer(tinted(color, [by; 3]), cloth.roughness);
     Surface {
         mask: Mask::Sewn(kind),
-        layers: [tone(0.45), layer(on, roughness), tone(0.8), tone(0.6)],
+        layers: [tone(0.64), layer(on, roughness), tone(0.8), tone(0.6)],
         ..cloth
     }
 }

@@ -209,6 +209,7 @@ pub fn catalogue(library: &Library) -> Catalogue {
     let of_clip = |clip: &Clip| Activity {
         id: clip.id.clone(),
         activity: clip.activity().to_owned(),
+        unsuited: clip.unsuited(),
         ..Activity::default()
     };
     let of_pose = |pose: &Pose| Activity {

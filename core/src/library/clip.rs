@@ -20,6 +20,8 @@ use std::sync::OnceLock;
 
 use glam::DQuat;
 
+use super::pose::Wear;
+
 /// First bytes of the unpacked file.
 pub const MAGIC: &[u8; 8] = b"FGCLIPS1";
 
@@ -137,6 +139,16 @@ impl Clip {
             "crawl" => "crawling",
             "getup_facedown" | "getup_faceup" => "getting_up",
             _ => "moving",
+        }
+    }
+
+    /// What nobody moves like that in: skirts and coats hang still, which they would not on somebody
+    /// who turns over.
+    #[must_use]
+    pub fn unsuited(&self) -> Vec<Wear> {
+        match self.activity() {
+            "tumbling" | "crawling" | "getting_up" => vec![Wear::Skirt, Wear::Coat],
+            _ => Vec::new(),
         }
     }
 
