@@ -86,15 +86,18 @@ impl Worn {
             Skirt::new(shell, &cut, &under)
         });
         let mut all = Self { bottom, top, skirt, outer, coat, feet, hang: None };
-        all.hang(shell, trunk);
+        all.hang(shell, cuts, trunk);
         all
     }
 
-    /// Hangs a skirt on a net of its own. Under jackets and coats it moves with the legs, as they do:
-    /// what hangs by itself would show through what does not.
-    fn hang(&mut self, shell: &Shell<'_>, trunk: &Trunk) {
-        if let (Some(skirt), None) = (&mut self.skirt, &self.outer) {
-            let net = skirt.net(shell, trunk);
+    /// Hangs a skirt on a net of its own; where a jacket lies over it, and all of it under a coat, it
+    /// moves with the legs, as they do: what hangs by itself would show through what does not.
+    fn hang(&mut self, shell: &Shell<'_>, cuts: &Cuts, trunk: &Trunk) {
+        let covered_y =
+            cuts.jacket_hem().and_then(|y| Level::find(shell, y)).map(|hem| hem.at(0.0));
+        let bare = self.outer.is_none() || covered_y.is_some();
+        if let Some(skirt) = self.skirt.as_mut().filter(|_| bare) {
+            let net = skirt.net(shell, (trunk, covered_y));
             skirt.hang_on(shell, &net);
             self.hang = Some(net);
         }

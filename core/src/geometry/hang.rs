@@ -53,8 +53,10 @@ const FIRST_STEPS: usize = 2;
 /// where it started. Of the poses looked at those that are whole came to 2.1 at most, the torn ones
 /// to 4.9 and more.
 const TORN: f64 = 3.0;
-/// From its upper edge to this far below it the cloth goes more and more its own way, metres.
-const FIXED_M: [f32; 2] = [0.14, 0.24];
+/// So far below its upper edge the cloth goes its own way, metres, after going with the body down to
+/// [`FIXED_M`] or to where other cloth lies over it.
+const LOOSENS_M: f32 = 0.10;
+const FIXED_M: f32 = 0.14;
 
 /// A net over cloth at rest, row by row.
 #[derive(Clone, Debug, PartialEq)]
@@ -64,7 +66,9 @@ pub struct Hang {
     /// What would move the points if the cloth had no weight: the skeleton's joints and those
     /// of [`sway`].
     start: Vec<SkinVertex>,
-    /// 0 where the cloth lies on the hips, 1 where it hangs.
+    /// How far below its upper edge the cloth goes with the body, metres.
+    fixed_m: f32,
+    /// 0 where it does, 1 where it hangs.
     free: Vec<f64>,
     /// Wanted distance from the outlines of trunk and legs.
     clear_m: Vec<f64>,
@@ -74,12 +78,13 @@ pub struct Hang {
 }
 
 impl Hang {
-    /// A net of points with what would move them, and how far each is from what is under it, metres.
+    /// A net of points with what would move them, and how far each is from what is under it, metres;
+    /// other cloth lies over it down to a height.
     pub(super) fn new(
         points: &[Vec3],
         gaps_m: &[f32],
         start: Vec<SkinVertex>,
-        trunk: &Trunk,
+        (trunk, covered_y): (&Trunk, Option<f32>),
     ) -> Self {
         let rest = trunk.solids(&PosedSkeleton::REST);
         let points_m: Vec<DVec3> = points.iter().map(|p| p.as_dvec3()).collect();
@@ -88,20 +93,20 @@ impl Hang {
             (rest.distance_m(*p) - f64::from(*gap_m) + NEAR_M).clamp(least, most)
         };
         let clear_m = points_m.iter().zip(gaps_m).map(clear).collect();
+        let fixed_m = covered_y.map_or(FIXED_M, |y| FIXED_M.max(points[0].y - y));
         let free = |i: usize| {
-            let [from, to] = FIXED_M;
             let below_m = points[i % COLUMNS].y - points[i].y;
-            f64::from(((below_m - from) / (to - from)).clamp(0.0, 1.0))
+            f64::from(((below_m - fixed_m) / LOOSENS_M).clamp(0.0, 1.0))
         };
         let free: Vec<f64> = (0..points.len()).map(free).collect();
         let deep_m = gaps_m.iter().map(|gap_m| f64::from(*gap_m) - NEAR_M).collect();
-        Self { free, points_m, start, clear_m, deep_m }
+        Self { fixed_m, free, points_m, start, clear_m, deep_m }
     }
 
     /// Whether a place in a column is so high that the cloth lies on the hips there.
     pub(super) fn is_fixed(&self, p: Vec3, turn: f32) -> bool {
         let column = (turn.rem_euclid(1.0) * COLUMNS as f32 + 0.5) as usize % COLUMNS;
-        self.points_m[column].y - f64::from(p.y) < f64::from(FIXED_M[0])
+        self.points_m[column].y - f64::from(p.y) < f64::from(self.fixed_m)
     }
 
     /// Joints and weights of a point of cloth near the net.
@@ -321,7 +326,7 @@ mod tests {
             })
             .collect();
         let hips = SkinVertex { joints: [0; 4], weights: [255, 0, 0, 0] };
-        Hang::new(&points, &vec![0.05; points.len()], vec![hips; points.len()], trunk)
+        Hang::new(&points, &vec![0.05; points.len()], vec![hips; points.len()], (trunk, None))
     }
 
     fn posed(pose: &str) -> (Hang, Vec<DVec3>, PosedSkeleton, RestBody) {

@@ -82,7 +82,7 @@ impl Skirt {
     }
 
     /// The net that can move it.
-    pub fn net(&self, shell: &Shell<'_>, trunk: &Trunk) -> Hang {
+    pub fn net(&self, shell: &Shell<'_>, under: (&Trunk, Option<f32>)) -> Hang {
         let rows = self.positions.len() / self.columns;
         let at = |row: f32, column: f32| {
             let (r, k) = ((row as usize).min(rows - 2), column as usize);
@@ -99,7 +99,7 @@ impl Skirt {
             .map(|(row, column)| at(row, column))
             .collect();
         let gaps_m = self.gaps_m(shell, &points);
-        Hang::new(&points, &gaps_m, weights(shell, &points, hang::COLUMNS), trunk)
+        Hang::new(&points, &gaps_m, weights(shell, &points, hang::COLUMNS), under)
     }
 
     /// Distances of points from what the skirt goes round: from the nearest vertex's tangent plane, or

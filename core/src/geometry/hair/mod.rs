@@ -33,12 +33,14 @@ use super::garment::step;
 use crate::base::hash::Hasher;
 use crate::library::figure::Figure;
 use crate::library::mesh::{Cutout, Mesh, SkinVertex, Triangle};
-use crate::scene::{HairStyle, HeadwearKind, Person};
+use crate::scene::{HairStyle, HeadwearKind, OuterKind, Outfit, Person, TopKind};
 
 /// Locks by level of detail: share of the finest count, width, and share of the points.
 const LEVELS: [(f32, f32, f32); 3] = [(0.7, 1.4, 1.3), (0.25, 2.1, 0.8), (0.1, 2.6, 0.5)];
 /// Width of a strand of a cutout by level of detail, metres; coarser levels have none.
 const STRAND_M: [f32; 2] = [0.0011, 0.0020];
+/// What a hood that is not worn adds to that behind the neck.
+const HOOD_M: f32 = 0.026;
 /// Roots start a little under the skin.
 const SUNK_M: f32 = 0.0014;
 
@@ -65,8 +67,8 @@ impl Head {
         skin: &[Vec3],
     ) -> Self {
         let scalp = Scalp::new(figure, rest);
-        let clothes_m = 0.014 + (person.outfit.top.looseness_m as f32).clamp(0.0, 0.06);
-        let near = Near::new(figure, &scalp.frame, lod, skin, (above_y(person), clothes_m));
+        let clothes_m = |p: Vec3| clothes_m(&person.outfit, p);
+        let near = Near::new(figure, &scalp.frame, lod, skin, above_y(person), &clothes_m);
         let joint = |name: &str| {
             let names = figure.joint_names();
             names.iter().position(|n| n == name).unwrap_or(0) as u8
@@ -112,6 +114,17 @@ pub(super) fn above_y(person: &Person) -> f32 {
     let hangs = form.is_some_and(|f| f.sheet_y.is_some() || f.tail != Tail::None)
         || person.look.headwear.kind == HeadwearKind::Headscarf;
     if hangs { 0.36 } else { 0.56 }
+}
+
+/// How far clothes reach off the skin at a place on the template, about, metres.
+fn clothes_m(outfit: &Outfit, p: Vec3) -> f32 {
+    let loose = |looseness_m: f64| (looseness_m as f32).clamp(0.0, 0.06);
+    let bare = outfit.outer.kind == OuterKind::None;
+    let over = if bare { 0.0 } else { 0.006 + loose(outfit.outer.looseness_m) };
+    let worn = (0.014 + loose(outfit.top.looseness_m) + over) * step(0.60, 0.56, p.y);
+    let hood = bare && outfit.top.kind == TopKind::Hoodie;
+    let behind = step(0.05, -0.03, p.z) * step(0.63, 0.59, p.y) * step(0.40, 0.45, p.y);
+    worn + if hood { HOOD_M * behind } else { 0.0 }
 }
 
 /// A number of the person's own: the same whatever the person wears.

@@ -9,7 +9,6 @@ use glam::Vec3;
 
 use super::scalp::Frame;
 use crate::geometry::cut::net_normals;
-use crate::geometry::garment::step;
 use crate::geometry::wide::wide;
 use crate::library::figure::{Figure, GroupId, LOD_COUNT};
 
@@ -39,14 +38,15 @@ pub(in crate::geometry) struct Near {
 const LANES: usize = 8;
 
 impl Near {
-    /// Skin above a height on the template, from the skin's vertices at a level of detail; below the
-    /// neck it is pushed out by what clothes take.
+    /// Skin above a height on the template, from the skin's vertices at a level of detail, pushed out
+    /// by what clothes take at a place on the template.
     pub fn new(
         figure: &Figure,
         frame: &Frame,
         lod: usize,
         skin: &[Vec3],
-        (above_y, clothes_m): (f32, f32),
+        above_y: f32,
+        clothes_m: &dyn Fn(Vec3) -> f32,
     ) -> Self {
         let lod = lod.max(FINEST);
         let group = figure.group(GroupId::Skin);
@@ -62,8 +62,7 @@ impl Near {
             let q = Vec3::new(t.x[v], t.y[v], t.z[v]);
             let n = normals[i];
             if used[i] && q.y > above_y && !is_inside(q) && !faces_the_head(q, n) {
-                let cloth = clothes_m * step(0.60, 0.56, q.y);
-                samples.push(Sample { p: at[i] + n * cloth, n });
+                samples.push(Sample { p: at[i] + n * clothes_m(q), n });
             }
         }
         Self::sorted(samples, CELL_M[lod] * frame.scale)

@@ -262,7 +262,7 @@ pub(super) fn form(style: HairStyle) -> Option<Form> {
                 yields: 0.5,
                 clings: 0.1,
                 curl: Some((0.0095, 0.048)),
-                points: 24,
+                points: 19,
                 tuft: false,
                 flow: Flow::Fall,
             }),
@@ -297,7 +297,7 @@ pub(super) fn form(style: HairStyle) -> Option<Form> {
                     layer_m: 0.004,
                     clings: 0.3,
                     curl: wavy.then_some((0.007, 0.085)),
-                    points: if wavy { 17 } else { 14 },
+                    points: if wavy { 16 } else { 14 },
                     tuft: false,
                     flow: Flow::Fall,
                     ..LOOSE
