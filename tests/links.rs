@@ -19,6 +19,7 @@ fn catalogue() -> Catalogue {
         clips: ["walk", "run"].map(activity).to_vec(),
         textures: vec!["plain".to_owned()],
         cloth_patterns: vec!["stripes".to_owned()],
+        cloth_reliefs: vec!["twill".to_owned()],
         ..Catalogue::default()
     }
 }

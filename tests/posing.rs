@@ -1,5 +1,6 @@
 //! Document to scene: what people do, in what clothes and on what.
 
+use std::collections::BTreeSet;
 use std::sync::LazyLock;
 
 use figurant_core::document::{Document, Problem, file};
@@ -99,6 +100,21 @@ fn hands_of_clips_are_mostly_relaxed_and_poses_keep_theirs() {
     assert!(relaxed * 10 > hands.len() * 7 && relaxed < hands.len(), "{relaxed} {}", hands.len());
 }
 
+#[test]
+fn nobody_tumbles_in_a_coat_and_clips_of_others_stay_alike_often() {
+    let turns = |p: &Person| ["tumbling", "crawling", "getting_up"].contains(&&*p.pose.activity);
+    let suited = people(&coated(r#"{"clip": "any_clip", "suits_clothes": true}"#), 200);
+    assert!(!suited.iter().any(turns));
+    let any = people(&coated(r#"{"clip": "any_clip", "suits_clothes": false}"#), 200);
+    assert!(any.iter().filter(|p| turns(p)).count() > 60);
+    let clips: BTreeSet<&str> = suited.iter().map(|p| &*p.pose.clip).collect();
+    for clip in &clips {
+        let n = suited.iter().filter(|p| p.pose.clip == *clip).count();
+        let share = (n * clips.len()) as f64 / suited.len() as f64;
+        assert!((0.8..1.2).contains(&share), "{clip}: {share} of what is even");
+    }
+}
+
 /// Everybody wears a coat.
 fn coated(pose: &str) -> Document {
     let mut document = posed(pose);
@@ -110,12 +126,12 @@ fn coated(pose: &str) -> Document {
 #[test]
 fn nobody_swims_in_a_coat_unless_told_to() {
     let swims = |p: &&Person| p.pose.activity == "swimming";
-    let suited = people(&coated(r#"{"clip": "any_pose"}"#), 300);
+    let suited = people(&coated(r#"{"clip": "any_pose", "suits_clothes": true}"#), 300);
     assert!(suited.iter().all(|p| p.outfit.outer.kind == OuterKind::Coat));
     assert_eq!(suited.iter().filter(swims).count(), 0);
     let unsuited = coated(r#"{"clip": "any_pose", "suits_clothes": false}"#);
     assert!(people(&unsuited, 300).iter().filter(swims).count() > 20);
-    let told = people(&coated(r#"{"clip": "pose/swimming_crawl"}"#), 20);
+    let told = people(&coated(r#"{"clip": "pose/swimming_crawl", "suits_clothes": true}"#), 20);
     assert!(told.iter().all(|p| swims(&p)));
     // Whoever wears what suits the pose keeps it, and everybody keeps all else.
     let any = coated(r#"{"clip": "any_pose", "suits_clothes": false}"#);

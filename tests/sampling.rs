@@ -44,6 +44,7 @@ fn catalogue() -> Catalogue {
             .ids(TextureGroup::Procedural)
             .to_vec(),
         cloth_patterns: names("pattern", 5),
+        cloth_reliefs: names("relief", 7),
         environments: Environments::new(&[]).expect("no folders").ids().to_vec(),
     }
 }

@@ -210,9 +210,10 @@ impl Road for Native {
                 library.poses.ids().count()
             ),
             format!(
-                "{} textures and {} cloth patterns",
+                "{} textures, {} cloth patterns and {} reliefs of cloth",
                 library.surface_textures().len(),
-                library.textures.ids(TextureGroup::Cloth).len()
+                library.textures.ids(TextureGroup::Cloth).len(),
+                library.textures.ids(TextureGroup::Relief).len()
             ),
         ])
     }

@@ -116,6 +116,9 @@ pub struct Top {
     pub color: Auto<Color>,
     /// Cloth pattern id; `"any"` for one of all, `"none"` for plain.
     pub pattern: Choice<String>,
+    /// How the cloth is woven: a relief's id; `"any"` for one of all, `"none"` for folds alone. Knitwear
+    /// and leather have one of their own.
+    pub relief: Choice<String>,
     /// Rotation of the hue.
     pub hue_offset_deg: Param,
 }
@@ -129,6 +132,7 @@ impl Default for Top {
             looseness_m: Auto::default(),
             color: Auto::default(),
             pattern: some_pattern(0.35),
+            relief: some_pattern(0.6),
             hue_offset_deg: Param::uniform(0.0, 360.0),
         }
     }
@@ -154,6 +158,9 @@ pub struct Bottom {
     pub color: Auto<Color>,
     /// Cloth pattern id; `"any"` for one of all, `"none"` for plain.
     pub pattern: Choice<String>,
+    /// How the cloth is woven: a relief's id; `"any"` for one of all, `"none"` for folds alone. Knitwear
+    /// and leather have one of their own.
+    pub relief: Choice<String>,
     /// Rotation of the hue.
     pub hue_offset_deg: Param,
 }
@@ -169,6 +176,7 @@ impl Default for Bottom {
             looseness_m: Auto::default(),
             color: Auto::default(),
             pattern: some_pattern(0.15),
+            relief: some_pattern(0.6),
             hue_offset_deg: Param::uniform(0.0, 360.0),
         }
     }
@@ -188,6 +196,9 @@ pub struct Outer {
     pub color: Auto<Color>,
     /// Cloth pattern id; `"any"` for one of all, `"none"` for plain.
     pub pattern: Choice<String>,
+    /// How the cloth is woven: a relief's id; `"any"` for one of all, `"none"` for folds alone. Knitwear
+    /// and leather have one of their own.
+    pub relief: Choice<String>,
     /// Rotation of the hue.
     pub hue_offset_deg: Param,
 }
@@ -200,6 +211,7 @@ impl Default for Outer {
             looseness_m: Auto::default(),
             color: Auto::default(),
             pattern: some_pattern(0.15),
+            relief: some_pattern(0.6),
             hue_offset_deg: Param::default(),
         }
     }

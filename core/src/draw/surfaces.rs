@@ -12,8 +12,9 @@ use crate::scene;
 
 /// Normals of folded cloth.
 const FOLDS: &str = "normal/detail/folds";
-/// Strength of the relief of cloth that has its own, knitwear and leather.
+/// Strength of the relief of cloth that has its own, and of the light that its hollows lack.
 const WEAVE_STRENGTH: f32 = 0.8;
+const HOLLOWS_STRENGTH: f32 = 0.35;
 
 /// How many pixels of the picture a metre must span for what is only seen close up: furrows and
 /// freckles, strands, then the folds of cloth (about five pixels to a fold).
@@ -80,11 +81,12 @@ impl Surfaces {
             None => self.optional(surface.texture.as_deref(), library, list)?,
         };
         let (detail, uv_repeat) = detail_texture(surface.detail);
+        let weave = weave(surface, library).filter(|_| near);
         let aged = surface.detail == Detail::Age && close && surface.detail_strength > 0.0;
         let detail_map = if aged {
             Some(self.shared("figure/head_age", list, || Arc::clone(&figure.head_age()[0])))
         } else {
-            self.optional(detail, library, list)?
+            self.optional(weave.or(detail), library, list)?
         };
         let mask = match surface.mask {
             Mask::None => None,
@@ -119,7 +121,7 @@ impl Surfaces {
             normal_map,
             normal_strength,
             detail_map,
-            detail_strength: surface.detail_strength,
+            detail_strength: weave.map_or(surface.detail_strength, |_| HOLLOWS_STRENGTH),
             uv_repeat: uv_repeat.map(|n| n * surface.repeat),
             hue_offset_deg: surface.hue_offset_deg,
             roughness: surface.roughness,
@@ -142,6 +144,7 @@ impl Surfaces {
             Relief::Cloth => surface.texture.as_deref(),
             Relief::Detail => detail_texture(surface.detail).0,
         };
+        let of = weave(surface, library).or(of);
         let own = of.and_then(|id| library.textures.normal_map(id));
         let (id, strength) = match (&own, surface.relief) {
             (Some(id), Relief::Cloth) => (Some(id.as_str()), WEAVE_STRENGTH),
@@ -190,6 +193,13 @@ impl Surfaces {
             list.textures.len() as u32 - 1
         })
     }
+}
+
+/// How a surface's cloth is woven, where its pattern does not say so.
+fn weave<'a>(surface: &'a Surface, library: &Library) -> Option<&'a str> {
+    let pattern = surface.texture.as_deref();
+    let own = pattern.is_some_and(|id| library.textures.normal_map(id).is_some());
+    surface.weave.as_deref().filter(|_| !own)
 }
 
 /// Texture of a fine structure, and how often it repeats over 0..1. Cloth patterns share its

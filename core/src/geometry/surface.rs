@@ -46,7 +46,7 @@ pub enum Detail {
 /// Kind of relief, to be looked up as a normal map.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Relief {
-    /// That of the pattern, or else folds.
+    /// That of the pattern, or else of the weave, or else folds.
     Cloth,
     /// That of the fine structure.
     Detail,
@@ -67,6 +67,8 @@ pub struct Surface {
     pub layers: [[f32; 4]; 4],
     /// Cloth pattern: texture id in the library.
     pub texture: Option<String>,
+    /// How cloth is woven: id in the library.
+    pub weave: Option<String>,
     /// The figure's map of the head's colour with these freckles.
     pub tint: Option<Freckles>,
     /// Rotation of the hue.
@@ -110,7 +112,10 @@ pub fn surface(kind: PartKind, person: &Person) -> Surface {
         PartKind::Top => top_surface(top),
         PartKind::Bottom => bottom_surface(bottom),
         PartKind::Outer => {
-            let cloth = cloth(outer.color, outer.texture.as_ref(), outer.hue_offset_deg);
+            let cloth = Surface {
+                weave: outer.relief.clone(),
+                ..cloth(outer.color, outer.texture.as_ref(), outer.hue_offset_deg)
+            };
             match outer.kind {
                 OuterKind::Coat => sewn(cloth, Sewn::Coat, ([0.030, 0.026, 0.022], 0.3)),
                 _ => sewn(cloth, Sewn::Jacket, ([0.16, 0.155, 0.15], 0.35)),
@@ -147,6 +152,7 @@ fn plain(base_color: [f32; 3], roughness: f32) -> Surface {
         mask: Mask::None,
         layers: [[0.0; 4]; 4],
         texture: None,
+        weave: None,
         tint: None,
         hue_offset_deg: 0.0,
         repeat: 1.0,
@@ -310,6 +316,7 @@ fn cloth(color: [f64; 3], texture: Option<&String>, hue_offset_deg: f64) -> Surf
 
 fn top_surface(top: &Top) -> Surface {
     let cloth = Surface {
+        weave: top.relief.clone(),
         relief_strength: top_relief(top.kind),
         ..cloth(top.color, top.texture.as_ref(), top.hue_offset_deg)
     };
@@ -326,6 +333,7 @@ fn top_surface(top: &Top) -> Surface {
 
 fn bottom_surface(bottom: &Bottom) -> Surface {
     let cloth = Surface {
+        weave: bottom.relief.clone(),
         relief_strength: bottom_relief(bottom.kind),
         ..cloth(bottom.color, bottom.texture.as_ref(), bottom.hue_offset_deg)
     };

@@ -225,6 +225,7 @@ pub fn catalogue(library: &Library) -> Catalogue {
         poses: library.poses.all().iter().map(of_pose).collect(),
         textures: library.surface_textures(),
         cloth_patterns: library.textures.ids(TextureGroup::Cloth).to_vec(),
+        cloth_reliefs: library.textures.ids(TextureGroup::Relief).to_vec(),
         environments: library.environments.ids().to_vec(),
     }
 }

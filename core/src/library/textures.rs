@@ -5,6 +5,7 @@
 //! | `procedural/<family>/<nn>` | colour, tiles: for walls, floors and objects |
 //! | `cloth/<family>/<nn>` | colour, tiles, light: multiplied by a garment's colour |
 //! | `detail/<skin, hair, curls, cloth, folds>` | plain numbers round 0.5, tiles |
+//! | `relief/<family>/<variant>` | the same of cloth by how it is woven, with a normal map |
 //! | `normal/<...>` | plain numbers, normals of the computed texture of that name |
 //! | `folder/<folder>/<file>` | colour, a user's JPEG or PNG by its path below the folder |
 //!
@@ -37,6 +38,8 @@ pub enum TextureGroup {
     Cloth,
     /// Computed fine structure, plain numbers.
     Detail,
+    /// Computed weaves of cloth, plain numbers.
+    Relief,
     /// Computed normal maps, plain numbers.
     Normal,
     /// Users' pictures.
@@ -77,6 +80,7 @@ pub struct TextureLibrary {
     procedural: Vec<String>,
     cloth: Vec<String>,
     detail: Vec<String>,
+    relief: Vec<String>,
     normal: Vec<String>,
     folder: Vec<String>,
     paths: BTreeMap<String, PathBuf>,
@@ -98,6 +102,7 @@ impl TextureLibrary {
             procedural: procedural::ids(Kind::Procedural),
             cloth: procedural::ids(Kind::Cloth),
             detail: procedural::ids(Kind::Detail),
+            relief: procedural::ids(Kind::Relief),
             normal: procedural::normal_ids(),
             folder: paths.keys().cloned().collect(),
             paths,
@@ -128,6 +133,7 @@ impl TextureLibrary {
             TextureGroup::Procedural => &self.procedural,
             TextureGroup::Cloth => &self.cloth,
             TextureGroup::Detail => &self.detail,
+            TextureGroup::Relief => &self.relief,
             TextureGroup::Normal => &self.normal,
             TextureGroup::Folder => &self.folder,
         }
@@ -197,7 +203,7 @@ impl TextureLibrary {
     }
 
     fn all_groups(&self) -> impl Iterator<Item = &[String]> {
-        [&self.procedural, &self.cloth, &self.detail, &self.normal, &self.folder]
+        [&self.procedural, &self.cloth, &self.detail, &self.relief, &self.normal, &self.folder]
             .into_iter()
             .map(Vec::as_slice)
     }
@@ -255,6 +261,7 @@ mod tests {
             (TextureGroup::Procedural, "procedural/"),
             (TextureGroup::Cloth, "cloth/"),
             (TextureGroup::Detail, "detail/"),
+            (TextureGroup::Relief, "relief/"),
             (TextureGroup::Normal, "normal/"),
         ] {
             let ids = library.ids(group);

@@ -91,18 +91,21 @@ pub(super) fn dyed(outfit: &Outfit) -> MemberWardrobe {
         top: MemberTop {
             color: color(top.color),
             pattern: pattern(&top.texture),
+            relief: pattern(&top.relief),
             hue_offset_deg: Some(top.hue_offset_deg),
             ..MemberTop::default()
         },
         bottom: MemberBottom {
             color: color(bottom.color),
             pattern: pattern(&bottom.texture),
+            relief: pattern(&bottom.relief),
             hue_offset_deg: Some(bottom.hue_offset_deg),
             ..MemberBottom::default()
         },
         outer: MemberOuter {
             color: color(outer.color),
             pattern: pattern(&outer.texture),
+            relief: pattern(&outer.relief),
             hue_offset_deg: Some(outer.hue_offset_deg),
             ..MemberOuter::default()
         },
@@ -151,21 +154,27 @@ pub(super) fn check(people: &People, catalogue: &Catalogue, problems: &mut Vec<P
             problems.push(Problem::new(format!("people.cast[{i}].file"), what));
         }
         let wardrobe = &member.wardrobe;
-        let patterns = [
-            ("top", &wardrobe.top.pattern),
-            ("bottom", &wardrobe.bottom.pattern),
-            ("outer", &wardrobe.outer.pattern),
+        let (top, bottom, outer) = (&wardrobe.top, &wardrobe.bottom, &wardrobe.outer);
+        let [patterns, reliefs] = [
+            ("pattern", "cloth pattern", &catalogue.cloth_patterns),
+            ("relief", "relief of cloth", &catalogue.cloth_reliefs),
         ];
-        let known = &catalogue.cloth_patterns;
-        for (garment, id) in
-            patterns.iter().filter_map(|(garment, id)| Some((garment, id.as_ref()?)))
-        {
-            if id != PLAIN && !known.contains(id) {
-                let path = format!("people.cast[{i}].wardrobe.{garment}.pattern");
-                let problem = Problem::new(path, format!("there is no cloth pattern \"{id}\""));
-                let all = known.iter().map(String::as_str).chain([PLAIN]);
-                problems.push(problem.did_you_mean(id, all));
-            }
+        let cloths = [
+            ("top", &top.pattern, patterns),
+            ("bottom", &bottom.pattern, patterns),
+            ("outer", &outer.pattern, patterns),
+            ("top", &top.relief, reliefs),
+            ("bottom", &bottom.relief, reliefs),
+            ("outer", &outer.relief, reliefs),
+        ];
+        for (garment, id, (field, kind, known)) in cloths {
+            let Some(id) = id.as_ref().filter(|id| *id != PLAIN && !known.contains(id)) else {
+                continue;
+            };
+            let path = format!("people.cast[{i}].wardrobe.{garment}.{field}");
+            let problem = Problem::new(path, format!("there is no {kind} \"{id}\""));
+            let all = known.iter().map(String::as_str).chain([PLAIN]);
+            problems.push(problem.did_you_mean(id, all));
         }
         let groups = [
             ("face", &member.look.face, &catalogue.face_targets),

@@ -163,6 +163,9 @@ keys! {
     SEAT_TEXTURE = "people.seats.texture",
     SEAT_COLOR = "people.seats.color",
     SEAT_HUE = "people.seats.hue_offset",
+    TOP_RELIEF = "people.wardrobe.top.relief",
+    BOTTOM_RELIEF = "people.wardrobe.bottom.relief",
+    OUTER_RELIEF = "people.wardrobe.outer.relief",
 }
 
 #[cfg(test)]

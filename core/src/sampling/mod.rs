@@ -54,6 +54,8 @@ pub struct Catalogue {
     pub textures: Vec<String>,
     /// Patterns of cloth.
     pub cloth_patterns: Vec<String>,
+    /// Ways in which cloth is woven.
+    pub cloth_reliefs: Vec<String>,
     /// Pictures of all directions.
     pub environments: Vec<String>,
 }
@@ -199,6 +201,7 @@ pub fn check_assets(document: &Document, catalogue: &Catalogue) -> Vec<Problem> 
     let (occluders, people) = (&document.occluders, &document.people);
     let textures = ("texture", &catalogue.textures, true);
     let patterns = ("cloth pattern", &catalogue.cloth_patterns, true);
+    let reliefs = ("relief of cloth", &catalogue.cloth_reliefs, true);
     let (top, bottom) = (&people.wardrobe.top, &people.wardrobe.bottom);
     let outer = &people.wardrobe.outer;
     let environment = &document.lights.environment;
@@ -218,6 +221,9 @@ pub fn check_assets(document: &Document, catalogue: &Catalogue) -> Vec<Problem> 
         (people.enabled, "people.wardrobe.top.pattern", &top.pattern, patterns),
         (people.enabled, "people.wardrobe.bottom.pattern", &bottom.pattern, patterns),
         (people.enabled, "people.wardrobe.outer.pattern", &outer.pattern, patterns),
+        (people.enabled, "people.wardrobe.top.relief", &top.relief, reliefs),
+        (people.enabled, "people.wardrobe.bottom.relief", &bottom.relief, reliefs),
+        (people.enabled, "people.wardrobe.outer.relief", &outer.relief, reliefs),
     ];
     let mut problems = unread(document);
     for (enabled, path, choice, (kind, known, none_allowed)) in all {

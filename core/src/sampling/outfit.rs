@@ -7,7 +7,7 @@ use super::cast::PLAIN;
 use super::linked::Draw;
 use super::people::{PersonTraits, Source};
 use super::value::{color, flag, item, number};
-use super::{keys, outfit_table, quantile};
+use super::{Catalogue, keys, outfit_table, quantile};
 use crate::base::rng::Key;
 use crate::document::cast::{FixedColor, MemberWardrobe};
 use crate::document::{self, Auto, Choice, Color, ColorLaw, OutfitRow, Param, Wardrobe};
@@ -18,13 +18,13 @@ use crate::scene::{Bottom, BottomKind, Outer, OuterKind, Outfit, Shoes, Top, Top
 pub(super) fn outfit(
     wardrobe: &Wardrobe,
     known: &MemberWardrobe,
-    patterns: &[String],
+    catalogue: &Catalogue,
     traits: PersonTraits,
     lasting: Source,
     here: Source,
 ) -> Outfit {
     let (lasting, here) = (lasting.random_if(wardrobe.enabled), here.random_if(wardrobe.enabled));
-    let drawing = Drawing { known, patterns, lasting, here };
+    let drawing = Drawing { known, catalogue, lasting, here };
     let row = drawing.row(wardrobe, traits);
     let shoes = &wardrobe.shoes;
     Outfit {
@@ -52,7 +52,7 @@ pub(super) fn outfit(
 /// What one person's garments are drawn from.
 struct Drawing<'a> {
     known: &'a MemberWardrobe,
-    patterns: &'a [String],
+    catalogue: &'a Catalogue,
     lasting: Source<'a>,
     here: Source<'a>,
 }
@@ -110,15 +110,20 @@ impl Drawing<'_> {
             }),
             color: self.dye(known.color, &top.color, &CLOTH, keys::TOP_COLOR),
             texture: printed(known.pattern.as_ref(), || {
-                asset(&top.pattern, self.patterns, pattern).or_else(|| {
+                asset(&top.pattern, &self.catalogue.cloth_patterns, pattern).or_else(|| {
                     // What is not printed is knitted.
-                    let knitted: Vec<_> =
-                        self.patterns.iter().filter(|id| id.contains("/knit/")).collect();
+                    let knitted: Vec<_> = self
+                        .catalogue
+                        .cloth_patterns
+                        .iter()
+                        .filter(|id| id.contains("/knit/"))
+                        .collect();
                     let at = pattern.lane(2).uniform() * knitted.len() as f64;
                     let id = knitted.get(at as usize).filter(|_| kind == TopKind::Sweater);
                     id.map(|id| (*id).clone())
                 })
             }),
+            relief: self.relief(known.relief.as_ref(), &top.relief, keys::TOP_RELIEF),
             hue_offset_deg: known
                 .hue_offset_deg
                 .unwrap_or_else(|| number(&top.hue_offset_deg, self.here.of(keys::TOP_HUE))),
@@ -151,9 +156,13 @@ impl Drawing<'_> {
         // Denim is denim, whatever other cloths are printed with.
         let texture = printed(known.pattern.as_ref(), || {
             if jeans {
-                self.patterns.iter().find(|id| id.contains("/denim/")).cloned()
+                self.catalogue.cloth_patterns.iter().find(|id| id.contains("/denim/")).cloned()
             } else {
-                asset(&bottom.pattern, self.patterns, self.here.of(keys::BOTTOM_PATTERN))
+                asset(
+                    &bottom.pattern,
+                    &self.catalogue.cloth_patterns,
+                    self.here.of(keys::BOTTOM_PATTERN),
+                )
             }
         });
         let colors = if jeans { &DENIM } else { &CLOTH };
@@ -166,6 +175,10 @@ impl Drawing<'_> {
             }),
             color: self.dye(known.color, &bottom.color, colors, keys::BOTTOM_COLOR),
             texture,
+            // Denim is denim here, too.
+            relief: self
+                .relief(known.relief.as_ref(), &bottom.relief, keys::BOTTOM_RELIEF)
+                .filter(|_| !jeans),
             hue_offset_deg: known
                 .hue_offset_deg
                 .unwrap_or_else(|| number(&bottom.hue_offset_deg, self.here.of(keys::BOTTOM_HUE))),
@@ -189,12 +202,21 @@ impl Drawing<'_> {
             }),
             color: self.dye(known.color, &outer.color, &COAT, keys::OUTER_COLOR),
             texture: printed(known.pattern.as_ref(), || {
-                asset(&outer.pattern, self.patterns, self.here.of(keys::OUTER_PATTERN))
+                asset(
+                    &outer.pattern,
+                    &self.catalogue.cloth_patterns,
+                    self.here.of(keys::OUTER_PATTERN),
+                )
             }),
+            relief: self.relief(known.relief.as_ref(), &outer.relief, keys::OUTER_RELIEF),
             hue_offset_deg: known
                 .hue_offset_deg
                 .unwrap_or_else(|| number(&outer.hue_offset_deg, self.here.of(keys::OUTER_HUE))),
         }
+    }
+
+    fn relief(&self, known: Option<&String>, given: &Choice<String>, key: Key) -> Option<String> {
+        printed(known, || asset(given, &self.catalogue.cloth_reliefs, self.here.of(key)))
     }
 
     fn dye(
@@ -212,7 +234,7 @@ impl Drawing<'_> {
     }
 }
 
-/// The pattern of a cloth, if any: the known one, or else one that is drawn.
+/// The pattern or the relief of a cloth, if any: the known one, or else one that is drawn.
 fn printed(known: Option<&String>, drawn: impl FnOnce() -> Option<String>) -> Option<String> {
     known.map_or_else(drawn, |id| Some(id.clone()).filter(|id| id != PLAIN))
 }

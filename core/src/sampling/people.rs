@@ -148,9 +148,8 @@ impl<'a> Company<'a> {
         let body = body::body(&people.body, &known.body, lasting.random_if(people.body.enabled));
         let traits = PersonTraits::new(&body);
         let look = look::look(&people.look, &known.look, faces, traits, lasting);
-        let patterns = &catalogue.cloth_patterns;
         let outfit =
-            outfit::outfit(&people.wardrobe, &known.wardrobe, patterns, traits, lasting, here);
+            outfit::outfit(&people.wardrobe, &known.wardrobe, catalogue, traits, lasting, here);
         (body, look, outfit)
     }
 }

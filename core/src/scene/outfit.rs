@@ -162,6 +162,9 @@ pub struct Top {
     pub color: [f64; 3],
     /// Cloth pattern: texture id in the library; plain where absent.
     pub texture: Option<String>,
+    /// How the cloth is woven: a relief's id in the library; folds alone where absent.
+    #[serde(default)]
+    pub relief: Option<String>,
     /// Rotation of the hue of the cloth.
     pub hue_offset_deg: f64,
 }
@@ -181,6 +184,9 @@ pub struct Bottom {
     pub color: [f64; 3],
     /// Cloth pattern: texture id in the library; plain where absent.
     pub texture: Option<String>,
+    /// How the cloth is woven: a relief's id in the library; folds alone where absent.
+    #[serde(default)]
+    pub relief: Option<String>,
     /// Rotation of the hue of the cloth.
     pub hue_offset_deg: f64,
 }
@@ -198,6 +204,9 @@ pub struct Outer {
     pub color: [f64; 3],
     /// Cloth pattern: texture id in the library; plain where absent.
     pub texture: Option<String>,
+    /// How the cloth is woven: a relief's id in the library; folds alone where absent.
+    #[serde(default)]
+    pub relief: Option<String>,
     /// Rotation of the hue of the cloth.
     pub hue_offset_deg: f64,
 }

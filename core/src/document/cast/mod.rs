@@ -226,6 +226,8 @@ values! {
         color: FixedColor,
         /// Cloth pattern id; `"none"` for plain.
         pattern: String,
+        /// Id of how the cloth is woven; `"none"` for folds alone.
+        relief: String,
         /// Rotation of the hue of the cloth.
         hue_offset_deg: f64,
     }
@@ -246,6 +248,8 @@ values! {
         color: FixedColor,
         /// Cloth pattern id; `"none"` for plain.
         pattern: String,
+        /// Id of how the cloth is woven; `"none"` for folds alone.
+        relief: String,
         /// Rotation of the hue of the cloth.
         hue_offset_deg: f64,
     }
@@ -264,6 +268,8 @@ values! {
         color: FixedColor,
         /// Cloth pattern id; `"none"` for plain.
         pattern: String,
+        /// Id of how the cloth is woven; `"none"` for folds alone.
+        relief: String,
         /// Rotation of the hue of the cloth.
         hue_offset_deg: f64,
     }

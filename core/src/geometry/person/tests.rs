@@ -36,6 +36,7 @@ fn outfit(i: usize, x: f64) -> Outfit {
             looseness_m: 0.004 + 0.02 * x,
             color,
             texture: None,
+            relief: None,
             hue_offset_deg,
         },
         bottom: Bottom {
@@ -45,6 +46,7 @@ fn outfit(i: usize, x: f64) -> Outfit {
             looseness_m: 0.02 * (1.0 - x),
             color,
             texture: None,
+            relief: None,
             hue_offset_deg,
         },
         outer: Outer {
@@ -53,6 +55,7 @@ fn outfit(i: usize, x: f64) -> Outfit {
             looseness_m: 0.01,
             color,
             texture,
+            relief: None,
             hue_offset_deg,
         },
         shoes: Shoes {

@@ -7,7 +7,7 @@ use super::dice::Dice;
 use super::field::{Cells, Field};
 
 /// A field as grey, its mean at the middle of the range.
-fn grey(field: Field) -> Painting {
+pub(super) fn grey(field: Field) -> Painting {
     Canvas::from_field(&field.with_mean(0.5), |v| [v; 3]).into()
 }
 
@@ -40,18 +40,23 @@ pub(super) fn skin(dice: &mut Dice) -> Painting {
     grey(field)
 }
 
-/// Folds of worn cloth: soft creases, some across and more aslant.
-pub(super) fn folds(dice: &mut Dice) -> Painting {
+/// Height of the folds of worn cloth in pixels: soft creases, some across and more aslant.
+pub(super) fn fold_height(dice: &mut Dice) -> Field {
     let bend = [Field::fbm(dice, 2, 2), Field::fbm(dice, 2, 2)];
     let broad = Field::noise(dice, 2, 2, 1, 0.5).warped([&bend[0], &bend[1]], 50.0);
     let across = Field::noise(dice, 2, 3, 1, 0.5).warped([&bend[1], &bend[0]], 60.0);
     let places = Field::fbm(dice, 2, 2);
-    let height = Field::from_fn(|x, y| {
+    Field::from_fn(|x, y| {
         let i = y * SIDE + x;
         // A crease is sharper than the cloth between creases, and not everywhere.
         let crease = (1.0 - across.0[i].abs() * 1.8).max(0.0);
         7.0 * broad.0[i] + 7.0 * crease * crease * smooth(-0.15, 0.35, places.0[i])
-    });
+    })
+}
+
+/// Folds alone.
+pub(super) fn folds(dice: &mut Dice) -> Painting {
+    let height = fold_height(dice);
     let grey = Field(height.0.iter().map(|h| h * 0.03).collect()).with_mean(0.5);
     let color = Canvas::from_field(&grey, |v| [v; 3]);
     Painting { color, height: Some(height) }

@@ -14,6 +14,7 @@ mod letters;
 mod pattern;
 mod plant;
 mod print;
+mod relief;
 mod scenery;
 mod surface;
 
@@ -45,6 +46,8 @@ pub(super) enum Kind {
     Cloth,
     /// Fine structure, plain numbers.
     Detail,
+    /// How cloth is woven, plain numbers with a normal map.
+    Relief,
 }
 
 /// A generator with its number of variants.
@@ -61,12 +64,16 @@ const fn wall(name: &'static str, variants: u32, paint: fn(&mut Dice) -> Paintin
     Family { kind: Kind::Procedural, name, variants, relief: false, paint }
 }
 
-const fn relief(name: &'static str, variants: u32, paint: fn(&mut Dice) -> Painting) -> Family {
+const fn rough(name: &'static str, variants: u32, paint: fn(&mut Dice) -> Painting) -> Family {
     Family { kind: Kind::Procedural, name, variants, relief: true, paint }
 }
 
 const fn cloth(name: &'static str, variants: u32, paint: fn(&mut Dice) -> Painting) -> Family {
     Family { kind: Kind::Cloth, name, variants, relief: false, paint }
+}
+
+const fn woven(name: &'static str, paint: fn(&mut Dice) -> Painting) -> Family {
+    Family { kind: Kind::Relief, name, variants: 2, relief: true, paint }
 }
 
 const fn detail(name: &'static str, paint: fn(&mut Dice) -> Painting) -> Family {
@@ -75,9 +82,9 @@ const fn detail(name: &'static str, paint: fn(&mut Dice) -> Painting) -> Family 
 
 /// All generators, by kind and name. Names and their numbers are for ever: scenes hold them.
 const FAMILIES: [Family; 50] = [
-    relief("bark", 3, plant::bark),
+    rough("bark", 3, plant::bark),
     wall("bokeh", 3, scenery::bokeh),
-    relief("brick", 3, surface::brick),
+    rough("brick", 3, surface::brick),
     wall("camouflage", 3, pattern::camouflage),
     wall("carpet", 3, pattern::carpet),
     wall("checker", 3, pattern::checker),
@@ -90,13 +97,13 @@ const FAMILIES: [Family; 50] = [
     wall("graffiti", 3, print::graffiti),
     wall("grass", 3, plant::grass),
     wall("groceries", 3, goods::groceries),
-    relief("ground", 3, surface::ground),
-    relief("grunge", 3, surface::grunge),
+    rough("ground", 3, surface::ground),
+    rough("grunge", 3, surface::grunge),
     wall("heap", 3, scenery::heap),
     wall("lake", 3, scenery::lake),
     wall("leaves", 3, plant::leaves),
     wall("marble", 3, surface::marble),
-    relief("metal", 3, surface::metal),
+    rough("metal", 3, surface::metal),
     wall("motif", 3, pattern::motif),
     wall("noise", 3, pattern::noise),
     wall("plaid", 3, pattern::plaid),
@@ -105,11 +112,11 @@ const FAMILIES: [Family; 50] = [
     wall("stripes", 3, pattern::stripes),
     wall("terrazzo", 3, surface::terrazzo),
     wall("text", 3, print::text),
-    relief("tiles", 3, surface::tiles),
-    relief("voronoi", 3, surface::voronoi),
+    rough("tiles", 3, surface::tiles),
+    rough("voronoi", 3, surface::voronoi),
     wall("waves", 3, pattern::waves),
-    relief("weave", 3, pattern::weave),
-    relief("wood", 3, surface::wood),
+    rough("weave", 3, pattern::weave),
+    rough("wood", 3, surface::wood),
     cloth("batik", 3, cloth::batik),
     cloth("camouflage", 3, cloth::camouflage),
     cloth("checks", 3, cloth::checks),
@@ -136,19 +143,40 @@ const DETAILS: [Family; 5] = [
     detail("skin", detail::skin),
 ];
 
+/// How cloth is woven.
+const RELIEFS: [Family; 16] = [
+    woven("basket", relief::basket),
+    woven("boucle", relief::boucle),
+    woven("cable", relief::cable),
+    woven("canvas", relief::canvas),
+    woven("corduroy", relief::corduroy),
+    woven("crepe", relief::crepe),
+    woven("crinkle", relief::crinkle),
+    woven("herringbone", relief::herringbone),
+    woven("pique", relief::pique),
+    woven("pleats", relief::pleats),
+    woven("quilt", relief::quilt),
+    woven("rib", relief::rib),
+    woven("seersucker", relief::seersucker),
+    woven("terry", relief::terry),
+    woven("twill", relief::twill),
+    woven("waffle", relief::waffle),
+];
+
 impl Kind {
     const fn prefix(self) -> &'static str {
         match self {
             Self::Procedural => "procedural",
             Self::Cloth => "cloth",
             Self::Detail => "detail",
+            Self::Relief => "relief",
         }
     }
 
     const fn encoding(self) -> Encoding {
         match self {
             Self::Procedural | Self::Cloth => Encoding::Color,
-            Self::Detail => Encoding::Linear,
+            Self::Detail | Self::Relief => Encoding::Linear,
         }
     }
 }
@@ -167,7 +195,7 @@ impl Family {
 }
 
 fn families() -> impl Iterator<Item = &'static Family> {
-    FAMILIES.iter().chain(&DETAILS)
+    FAMILIES.iter().chain(&DETAILS).chain(&RELIEFS)
 }
 
 /// All ids of a kind, in order.
@@ -282,6 +310,7 @@ mod tests {
         };
         assert!(sorted(ids(Kind::Procedural)) > 100);
         assert!(sorted(ids(Kind::Cloth)) > 40);
+        assert!(sorted(ids(Kind::Relief)) >= 28);
         assert!(sorted(normal_ids()) > 25);
         assert_eq!(
             ids(Kind::Detail),
@@ -352,7 +381,10 @@ mod tests {
 
     #[test]
     fn cloth_is_light_and_detail_lies_round_the_middle() {
-        for (kind, range) in [(Kind::Cloth, 120.0..250.0), (Kind::Detail, 120.0..136.0)] {
+        let plain = 120.0..136.0;
+        for (kind, range) in
+            [(Kind::Cloth, 120.0..250.0), (Kind::Detail, plain.clone()), (Kind::Relief, plain)]
+        {
             for id in ids(kind) {
                 let texture = picture(&id);
                 let sum: f64 = bytes(&texture).iter().map(|t| f64::from(t[1])).sum();

@@ -136,6 +136,7 @@ fn shared_structs_are_laid_out_alike() {
             order,
             mirrored,
             double_sided,
+            cutout,
         }),
         layout!(Vertex { position, u, normal, v }),
         layout!(ScreenVertex { x, y, depth, pad }),
