@@ -1,8 +1,10 @@
 //! The relief of cloth: how it is woven, knitted and sewn.
 //!
 //! A repeat shows about a quarter of a metre, as in [`super::cloth`], so that a pixel is half a
-//! millimetre. Each is a height for the normal map, with the folds of worn cloth under it, and plain
-//! numbers round 0.5 for the light that hollows lack.
+//! millimetre. Each is a height for the normal map, with the folds of worn cloth under it (the same
+//! ones as of cloth without a relief), and plain numbers round 0.5 for the light that hollows lack.
+
+use std::sync::LazyLock;
 
 use super::Painting;
 use super::canvas::{FULL, SIDE, cos_turns, fract, sin_turns, smooth};
@@ -12,16 +14,17 @@ use super::field::{Cells, Field};
 
 /// Share of the folds of cloth that has no relief of its own.
 const FOLDS: f32 = 0.7;
+static HEIGHT_OF_FOLDS: LazyLock<Field> =
+    LazyLock::new(|| detail::fold_height(&mut Dice::new("detail/folds")));
 /// Unevenness of real yarn, as a share of the depth.
 const YARN: f32 = 0.12;
 
 /// Cloth of a shape, 0 its hollows .. 1 its ridges, so many pixels deep.
 fn cloth(dice: &mut Dice, shape: Field, depth_px: f32) -> Painting {
-    let folds = detail::fold_height(dice);
     let yarn = Field::fbm(dice, 64, 3);
     let height = Field::from_fn(|x, y| {
         let i = y * SIDE + x;
-        FOLDS * folds.0[i] + depth_px * (shape.0[i] + YARN * yarn.0[i])
+        FOLDS * HEIGHT_OF_FOLDS.0[i] + depth_px * (shape.0[i] + YARN * yarn.0[i])
     });
     let hollows = Field::from_fn(|x, y| {
         let i = y * SIDE + x;
