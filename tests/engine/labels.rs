@@ -1,7 +1,7 @@
 //! Ids, distances and counts against the oracle and closed forms.
 
 use figurant_core::draw::DrawList;
-use figurant_core::library::mesh::Triangle;
+use figurant_core::library::mesh::{Cutout, Triangle};
 use figurant_core::plan::{Frame, ObjectSamples};
 use figurant_tests::drawlists::{self, add, empty, mixed, view};
 use figurant_tests::meshes::{self, Dice};
@@ -172,6 +172,35 @@ fn a_square_covers_the_pixels_that_it_covers() {
         let distance = frame.depth_m.unwrap()[30 * 64 + 30];
         assert!((distance - 10.0).abs() < 1e-5);
     }
+}
+
+/// Strands of a square cover the area that the formula says, on every place of it alike.
+#[test]
+fn a_cutout_leaves_the_area_that_its_formula_says() {
+    const STRANDS: u16 = 8;
+    let mut list = empty(view(256, 256, 1000.0), 4);
+    let square = facing_square(2.0, DVec3::new(0.0, 0.0, -10.0));
+    add(&mut list, meshes::square(), square, plain([0.5; 3]));
+    list.draws[0].cutout = Some(Cutout { strands_per_u: STRANDS, frayed_1024ths: 512 });
+    let frame = render(&list, LABELS);
+    // 200 pixels wide and high; v runs down and strands end at its upper edge.
+    let share = |strand: u32, v: f64| {
+        let [width, end, ..] = strand.wrapping_mul(0x9e37_79b1).to_be_bytes();
+        let [width, end] = [width, end].map(|byte| f64::from(byte) / 256.0);
+        let (half, end) = (0.30 + 0.32 * width, 0.75 * end);
+        (2.0 * half * ((v / 0.5 - end) / (1.0 - end)).clamp(0.0, 1.0)).min(1.0)
+    };
+    let rows = (0..2000).map(|row| (f64::from(row) + 0.5) / 2000.0);
+    let area: f64 =
+        rows.flat_map(|v| (0..u32::from(STRANDS)).map(move |strand| share(strand, v))).sum();
+    let expected = area / 2000.0 / f64::from(STRANDS) * 200.0 * 200.0 * 4.0;
+    let got = frame.object_samples.unwrap()[0].count as f64;
+    assert!((got / expected - 1.0).abs() < 0.003, "{got} samples, not {expected}");
+    // Nothing is left at the upper edge, and by far the most of the lower half.
+    let ids = frame.object_ids.unwrap();
+    let row = |y: usize| ids[y * 256 + 28..y * 256 + 228].iter().filter(|id| **id == 1).count();
+    assert_eq!(row(28), 0);
+    assert!(row(200) > 150 && row(200) < 200, "{}", row(200));
 }
 
 /// Two triangles that share an edge through sample centres leave no gap and no overlap, whatever
