@@ -66,7 +66,10 @@ pub(super) fn add(
         .map(|((p, n), f)| *p + *n * (s * (thick * step(0.0, 0.010, *f) + 0.0004)))
         .collect();
     let shell = Surface { positions: &pushed, ..*face };
-    let base = builder.add_cut(&shell, &field, None);
+    // Where there are locks, they end the beard, not the shell.
+    let inwards_m = if is_cut(head.lod) { 0.0035 } else { 0.0 };
+    let inner: Vec<f32> = field.iter().map(|f| f - inwards_m).collect();
+    let base = builder.add_cut(&shell, &inner, None);
     let start = base.end;
     if head.lod < 3 {
         let wide = [1.0, 1.6, 2.4][head.lod];

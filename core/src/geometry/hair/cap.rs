@@ -29,7 +29,7 @@ impl Grower<'_> {
         }
         if self.style == HairStyle::Balding {
             let here = style::wreath(root.local);
-            thick = thick * here * here - 0.0012 * (1.0 - here);
+            thick = thick * here * here - 0.0030 * (1.0 - here);
         }
         if let Some(edge) = self.head.brim_y(root.local) {
             // Pressed flat under a hat, and bulging less just below it.

@@ -346,7 +346,7 @@ impl Grower<'_> {
             return 0.0;
         }
         match self.style {
-            HairStyle::Balding => step(0.25, 0.8, style::wreath(root.local)),
+            HairStyle::Balding => step(0.04, 0.30, style::wreath(root.local)),
             // So short that ends beyond the border would be specks.
             HairStyle::Cropped | HairStyle::CrewCut => step(0.003, 0.009, root.depth),
             // Ends at the hairline frame the face.

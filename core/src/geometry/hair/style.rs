@@ -159,7 +159,7 @@ pub(super) fn form(style: HairStyle) -> Option<Form> {
         HairStyle::Balding => Form {
             cap: Cap { thick_m: 0.0042, taper_m: 0.020, side: 1.0, ..close },
             locks: Some(Locks {
-                count: 260,
+                count: 380,
                 length: Length::Between(0.012, 0.022),
                 width_m: 0.0075,
                 clear_m: (0.001, 0.004),
@@ -254,15 +254,15 @@ pub(super) fn form(style: HairStyle) -> Option<Form> {
         HairStyle::Curly => Form {
             cap: Cap { thick_m: 0.022, taper_m: 0.045, side: 0.8, lump: (0.25, 0.03), ragged: 0.8 },
             locks: Some(Locks {
-                count: 330,
+                count: 430,
                 length: Length::Down(0.655, 0.035),
-                width_m: 0.0120,
+                width_m: 0.0062,
                 clear_m: (0.010, 0.030),
                 layer_m: 0.012,
                 yields: 0.5,
                 clings: 0.1,
                 curl: Some((0.0095, 0.048)),
-                points: 19,
+                points: 18,
                 tuft: false,
                 flow: Flow::Fall,
             }),
