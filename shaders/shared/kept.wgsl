@@ -19,7 +19,7 @@ fn pixel_of(lane: u32, k: u32) -> vec2<i32> {
 // Takes a primitive for a sample, which stands at a place in the picture, raster units.
 fn keep(at: u32, depth: f32, order: u32, slot: u32, place: vec2<i32>) {
     let wins = depth > best_depth[at] || (depth == best_depth[at] && order < best_order[at]);
-    if wins && depth > 0.0 && leaves(slot, place) {
+    if wins && depth > 0.0 && leaves(place) {
         best_depth[at] = depth;
         best_order[at] = order;
         best_slot[at] = slot;

@@ -36,6 +36,7 @@ fn raster_one(slot: u32) {
     if any(own_high < low) || any(own_low > high) {
         return;
     }
+    take_cutout(slot);
     let a = y - y.yzx;
     let b = x.yzx - x;
     let bias = edge_bias(a, b);

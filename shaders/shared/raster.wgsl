@@ -43,6 +43,7 @@ fn raster_large(slot: u32, lane: u32, x: vec3<i32>, y: vec3<i32>) {
     if any(start + across + down < vec3<i32>(doubt)) {
         return;
     }
+    take_cutout(slot);
     let z = primitives[slot].depth;
     let order = primitives[slot].order;
     let inverse_area = primitives[slot].inverse_area;
@@ -72,6 +73,7 @@ fn raster_small(slot: u32, lane: u32, x: vec3<i32>, y: vec3<i32>) {
     let b = x.yzx - x;
     let bias = edge_bias(a, b);
     let start = -(a * x + b * y);
+    take_cutout(slot);
     let z = primitives[slot].depth;
     let order = primitives[slot].order;
     let rise = vec2<f32>(z.y - z.x, z.z - z.x) * primitives[slot].inverse_area;

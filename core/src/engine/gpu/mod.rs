@@ -286,7 +286,15 @@ impl State {
         times: &mut StageTimes,
     ) -> Result<(), EngineError> {
         let wanted = Wanted::new(list, shadow);
-        let places = times.measure("upload", || self.place(list, plan, &wanted))?;
+        let places = times.measure("upload", || {
+            self.place(list, plan, &wanted).or_else(|_| {
+                // This frame's may be scattered among gaps that other frames' left: once more, from
+                // the start.
+                self.meshes.forget();
+                self.textures.forget();
+                self.place(list, plan, &wanted)
+            })
+        })?;
         times.measure("pack", || {
             self.packed.fill(list, &wanted, shadow, &places);
             self.write(list, shadow)

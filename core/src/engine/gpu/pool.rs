@@ -133,6 +133,12 @@ impl<T: ?Sized> Pool<T> {
         (self.words - end >= words).then_some(end)
     }
 
+    /// Forgets all items, those of this frame too: what is placed from now on stands side by side.
+    pub fn forget(&mut self) {
+        self.items.clear();
+        self.taken.clear();
+    }
+
     /// Forgets items; whether there were any.
     fn evict(&mut self, unwanted: impl Fn(&Item<T>) -> bool) -> bool {
         let before = self.items.len();

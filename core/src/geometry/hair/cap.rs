@@ -85,10 +85,9 @@ impl Grower<'_> {
         const BEYOND_M: f32 = 0.0045;
         const FRAYED_M: f32 = 0.012;
         let s = self.scale();
-        let skip = [1, 2][self.head.lod];
         let (mut points, mut uvs, mut bare) = (Vec::<Vec3>::new(), Vec::new(), Vec::new());
         let mut u = 0.0;
-        for column in (0..=COLUMNS).step_by(skip) {
+        for column in 0..=COLUMNS {
             let roots = ROWS_OF_SEAM.map(|row| self.head.scalp.at(row, column as f32));
             let mut line = roots.map(|r| r.p + r.n * (self.cap_m(&r) + 0.0008 * s)).to_vec();
             let border = &roots[2];

@@ -38,9 +38,10 @@ use crate::library::mesh::{Cutout, Mesh, SkinVertex, Triangle};
 use crate::scene::{HairStyle, HeadwearKind, OuterKind, Outfit, Person, TopKind};
 
 /// Locks by level of detail: share of the finest count, width, and share of the points.
-const LEVELS: [(f32, f32, f32); 3] = [(0.7, 1.4, 1.3), (0.25, 2.1, 0.8), (0.1, 2.6, 0.5)];
-/// Width of a strand of a cutout by level of detail, metres; coarser levels have none.
-const STRAND_M: [f32; 2] = [0.0011, 0.0020];
+const LEVELS: [(f32, f32, f32); 3] = [(0.7, 1.4, 1.3), (0.22, 1.9, 0.6), (0.1, 2.6, 0.5)];
+/// Width of a strand of a cutout at the finest level of detail, metres; at coarser ones it would be a
+/// quarter of a pixel, and there is none.
+const STRAND_M: f32 = 0.0011;
 /// What a hood that is not worn adds to that behind the neck.
 const HOOD_M: f32 = 0.026;
 /// Roots start a little under the skin.
@@ -144,14 +145,13 @@ fn seed(person: &Person) -> u64 {
 
 /// Whether locks have a cutout at a level of detail.
 pub(super) const fn is_cut(lod: usize) -> bool {
-    lod < STRAND_M.len()
+    lod == 0
 }
 
 /// The cutout of locks at a level of detail, their strands ending over such a length.
 pub(super) fn strands(lod: usize, frayed_m: f32) -> Option<Cutout> {
-    let strand_m = STRAND_M.get(lod)?;
-    Some(Cutout {
-        strands_per_u: (1.0 / (UV_PER_M[0] * strand_m)) as u16,
+    is_cut(lod).then_some(Cutout {
+        strands_per_u: (1.0 / (UV_PER_M[0] * STRAND_M)) as u16,
         frayed_1024ths: (1024.0 * UV_PER_M[1] * frayed_m) as u16,
     })
 }
