@@ -237,7 +237,8 @@ fn one_posed_person_in_a_hundred_at_most_has_a_fault() {
 
 /// Moves all bare skin outwards.
 fn swell(dressed: &mut Dressed, by_m: f32) {
-    let skin = dressed.parts.iter().filter(|p| p.kind == PartKind::Skin);
+    let is_skin = |kind| matches!(kind, PartKind::Skin | PartKind::Underwear);
+    let skin = dressed.parts.iter().filter(|p| is_skin(p.kind));
     let triangles = skin.flat_map(|p| p.triangles.clone());
     let of_skin: BTreeSet<u32> =
         triangles.flat_map(|t| dressed.mesh.triangles[t as usize].get()).collect();

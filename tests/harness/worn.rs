@@ -60,7 +60,7 @@ impl Layer {
     /// Eyes, hair and glasses belong to none.
     const fn of(kind: PartKind) -> Option<Self> {
         match kind {
-            PartKind::Skin => Some(Self::Skin),
+            PartKind::Skin | PartKind::Underwear => Some(Self::Skin),
             PartKind::Socks => Some(Self::Socks),
             PartKind::Shoes | PartKind::Soles => Some(Self::Shoes),
             PartKind::Bottom => Some(Self::Bottom),

@@ -13,7 +13,7 @@ use super::frustum::Sphere;
 use super::objects::{self, world_from_model};
 use super::{Cast, DrawError, Drawing, DrawnPerson, Relevance, abi, blockers, rows};
 use crate::geometry::body::RestBody;
-use crate::geometry::person::{Dressed, MeshKey};
+use crate::geometry::person::{Dressed, MeshKey, hair_reach_m};
 use crate::geometry::points;
 use crate::geometry::pose::PosedSkeleton;
 use crate::geometry::seat::seat_block;
@@ -98,13 +98,18 @@ fn pose_one<'a>(
     let view_from_model = *view_from_world * world_from_model(&person.placement);
     let scale = person.placement.scale.abs().max_element();
     let of_joint = |j: usize| (skeleton.joint_m(j, body.heads_m[j]), body.reach_m[j]);
-    let cloth = hanging_cloth(&skeleton, &body, &person.outfit);
+    let hanging =
+        [hanging_hair(&skeleton, &body, person), hanging_cloth(&skeleton, &body, &person.outfit)];
     let in_view = |(center_m, radius_m): (DVec3, f64)| Sphere {
         center: view_from_model.transform_point3(center_m),
         radius_m: radius_m * scale,
     };
     Ok(Posed {
-        hull: (0..JOINT_COUNT).map(of_joint).chain(cloth).map(in_view).collect(),
+        hull: (0..JOINT_COUNT)
+            .map(of_joint)
+            .chain(hanging.into_iter().flatten())
+            .map(in_view)
+            .collect(),
         person,
         key,
         body,
@@ -142,6 +147,16 @@ fn skeleton(
     all.hands = pose.hands.unwrap_or(all.hands);
     let all = if pose.mirrored { all.mirrored() } else { all };
     Ok((PosedSkeleton::of_stance(heads_m, &all), all.rests))
+}
+
+/// Centre and radius of a sphere, model space, beyond which no hair hangs, wherever down is.
+fn hanging_hair(
+    skeleton: &PosedSkeleton,
+    body: &RestBody,
+    person: &Person,
+) -> Option<(DVec3, f64)> {
+    let reach_m = hair_reach_m(person.look.hair)? * body.head_scale * f64::from(body.shape.scale);
+    Some((skeleton.joint_m(trunk::HEAD, body.heads_m[trunk::HEAD]), reach_m))
 }
 
 /// How much farther than other clothes a skirt's hem may stand off the leg.
@@ -210,16 +225,7 @@ fn add_mesh(
         });
     }
     let first = list.palette.len() as u32;
-    let cloth = match &dressed.hang {
-        Some(hang) => {
-            // Weight pulls down in the world.
-            let to_model = posed.person.placement.rotation.inverse();
-            hang.joints(&posed.skeleton, &posed.body, to_model * DVec3::NEG_Y)
-        }
-        None => sway::joints(&posed.skeleton, &posed.body.heads_m).to_vec(),
-    };
-    let bones = posed.skeleton.model_from_rest.iter().chain(&cloth);
-    list.palette.extend(bones.map(|m| rows(&(posed.view_from_model * *m))));
+    list.palette.extend(joints(posed, dressed).map(|m| rows(&(posed.view_from_model * m))));
     list.objects.push(abi::DrawObject {
         mesh: Arc::clone(&dressed.mesh),
         view_from_model: rows(&posed.view_from_model),
@@ -230,6 +236,21 @@ fn add_mesh(
         blockers,
     });
     Ok(index)
+}
+
+/// Where all joints that move somebody's mesh go: the skeleton's and those of what hangs.
+fn joints(posed: &Posed, dressed: &Dressed) -> impl Iterator<Item = DAffine3> {
+    let (skeleton, body) = (&posed.skeleton, &*posed.body);
+    // Weight pulls down in the world.
+    let down = posed.person.placement.rotation.inverse() * DVec3::NEG_Y;
+    let cloth = sway::joints(skeleton, &body.heads_m);
+    let hair = dressed.tresses.as_ref().map(|t| t.joints(skeleton, body, down));
+    let skirt = dressed.hang.as_ref().map(|hang| {
+        let seat = posed.person.seat.as_ref().and_then(|_| seat_block(skeleton, body));
+        hang.joints(skeleton, (body, &cloth), (down, seat.as_ref()))
+    });
+    let hanging = hair.into_iter().chain(skirt).flatten();
+    skeleton.model_from_rest.into_iter().chain(cloth).chain(hanging)
 }
 
 /// Adds what somebody sits on, where that may be seen.

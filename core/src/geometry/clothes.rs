@@ -8,15 +8,17 @@ use std::ops::Range;
 use glam::Vec3;
 
 use super::body::{RestBody, SOLE_M};
-use super::cut::{Builder, Rim, normals_within};
+use super::cut::{Builder, Rim, Surface, normals_within};
 use super::garment::{self, Cuts, DEEP_M, Fields, NOT_WORN, Piece, Place, step};
 use super::hang::Hang;
 use super::layers::{self, Shell, raised};
+use super::over_seat;
 use super::person::{Evaluated, PartKind, Parts};
 use super::refine::Refined;
 use super::skirt::{self, Level, Skirt};
 use super::trunk::Trunk;
 use crate::library::figure::{Figure, GroupId};
+use crate::library::mesh::SkinVertex;
 use crate::scene::{BottomKind, ShoeKind};
 
 /// How far collars, plackets and pockets stand off the cloth that they are sewn to.
@@ -43,7 +45,7 @@ pub(super) struct Worn {
 
 impl Worn {
     /// Lays one garment over the other, from the skin outwards.
-    pub fn new(shell: &Shell<'_>, cuts: &Cuts, trunk: &Trunk) -> Self {
+    pub fn new(shell: &Shell<'_>, cuts: &Cuts, net: (&Trunk, usize)) -> Self {
         let fields = Fields::new(cuts, shell.places);
         let cut = (cuts, &fields);
         let feet = layers::footwear(shell, cuts);
@@ -86,21 +88,23 @@ impl Worn {
             Skirt::new(shell, &cut, &under)
         });
         let mut all = Self { bottom, top, skirt, outer, coat, feet, hang: None };
-        all.hang(shell, cuts, trunk);
+        all.hang(shell, cuts, net);
         all
     }
 
-    /// Hangs a skirt on a net of its own; where a jacket lies over it, and all of it under a coat, it
-    /// moves with the legs, as they do: what hangs by itself would show through what does not.
-    fn hang(&mut self, shell: &Shell<'_>, cuts: &Cuts, trunk: &Trunk) {
+    /// Hangs a skirt and a coat's lower part on one net, that of the longer one, so that neither shows
+    /// through the other; where a jacket lies over a skirt, it moves with the body, as that does.
+    fn hang(&mut self, shell: &Shell<'_>, cuts: &Cuts, (trunk, first_joint): (&Trunk, usize)) {
         let covered_y =
             cuts.jacket_hem().and_then(|y| Level::find(shell, y)).map(|hem| hem.at(0.0));
-        let bare = self.outer.is_none() || covered_y.is_some();
-        if let Some(skirt) = self.skirt.as_mut().filter(|_| bare) {
-            let net = skirt.net(shell, (trunk, covered_y));
-            skirt.hang_on(shell, &net);
-            self.hang = Some(net);
+        let mut hung: Vec<&mut Skirt> = self.skirt.iter_mut().chain(&mut self.coat).collect();
+        let lower = |a: &&Skirt, b: &&Skirt| a.hem_m().total_cmp(&b.hem_m());
+        let longest = hung.iter().map(|skirt| &**skirt).min_by(lower);
+        let net = longest.map(|skirt| skirt.net(shell, (trunk, covered_y), first_joint));
+        if let Some(net) = &net {
+            hung.iter_mut().for_each(|skirt| skirt.hang_on(shell, net));
         }
+        self.hang = net;
     }
 
     /// Takes away what of a skirt lies under a top or an outer garment.
@@ -138,11 +142,12 @@ fn spread_over(layer: &mut [Vec3], shell: &Shell<'_>, skirt: &[Vec3]) {
     }
 }
 
-/// Adds all clothes to the parts; gives what a skirt hangs on.
+/// Adds all clothes to the parts; gives what a skirt hangs on, whose joints are numbered from a first
+/// one on.
 pub(super) fn add(
     out: &mut Parts,
     figure: &Figure,
-    rest: &RestBody,
+    (rest, first_joint): (&RestBody, usize),
     cuts: &Cuts,
     lod: usize,
 ) -> Option<Hang> {
@@ -150,9 +155,10 @@ pub(super) fn add(
     let places = figure.places(GroupId::Shell, body.positions.len() as u32);
     let on = (&body.positions[..], &body.normals[..]);
     let shell = Shell::new(figure, lod, on, places, &rest.heads_m);
-    let mut worn = Worn::new(&shell, cuts, &rest.trunk);
+    let mut worn = Worn::new(&shell, cuts, (&rest.trunk, first_joint));
     worn.hide_skirt(&shell, cuts);
-    let cutter = Cutter { body: &body, shell: &shell, cuts, lod };
+    let over_seat = over_seat::weights(&shell, body.skin);
+    let cutter = Cutter { body: &body, shell: &shell, cuts, lod, over_seat: &over_seat };
 
     add_bottom(out, &cutter, &worn);
     add_top(out, &cutter, &worn);
@@ -273,6 +279,8 @@ struct Cutter<'a> {
     shell: &'a Shell<'a>,
     cuts: &'a Cuts,
     lod: usize,
+    /// Joints and weights of what lies over the seat.
+    over_seat: &'a [SkinVertex],
 }
 
 /// Where on the shell a piece is.
@@ -331,7 +339,10 @@ impl Cutter<'_> {
         let shell = self.shell;
         let Extent { field, triangles } = self.extent(piece);
         let normals = normals_within(layer, shell.net, &triangles);
-        let mut part = Refined::new(&self.body.with(layer, &normals), &field, &triangles);
+        let over_seat = matches!(piece, Piece::Bottom | Piece::Top | Piece::Outer);
+        let whole = self.body.with(layer, &normals);
+        let skin = if over_seat { self.over_seat } else { whole.skin };
+        let mut part = Refined::new(&Surface { skin, ..whole }, &field, &triangles);
         if self.lod == 0 {
             part.refine(|a, b| self.field(piece, Place::between(shell.places[a], shell.places[b])));
         }

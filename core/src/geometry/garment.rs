@@ -209,6 +209,11 @@ impl Cuts {
         (self.bottom.is_skirt() && !self.tucked()).then(|| self.hem_y())
     }
 
+    /// Whether a place on the skin has underwear: under skirts, which fly up.
+    pub fn is_underwear(&self, at: Place) -> bool {
+        self.bottom.is_skirt() && at.arm < 0.0 && at.leg < 0.14 && at.p.y < WAIST_Y - 0.01
+    }
+
     /// Lower edge of a jacket, on the template.
     pub fn jacket_hem(&self) -> Option<f32> {
         (self.outer == OuterKind::Jacket).then_some(JACKET_Y)

@@ -12,16 +12,18 @@ use glam::{DAffine3, DMat3, DVec3, Vec3};
 
 use super::body::RestBody;
 use super::pose::PosedSkeleton;
+use super::seat::SeatBlock;
 use super::skeleton::{JOINT_COUNT, Limb, Side, trunk as spine};
-use super::sway::{self, CLOTH_JOINT_COUNT};
+use super::sway::CLOTH_JOINT_COUNT;
+use super::tress::TRESS_JOINT_COUNT;
 use super::trunk::Trunk;
 use crate::library::mesh::SkinVertex;
 
 /// Rows of the net from the upper edge to the hem, and columns round the legs.
-pub(super) const ROWS: usize = 8;
+pub(super) const ROWS: usize = 7;
 pub(super) const COLUMNS: usize = 24;
 /// Joints are numbered in eight bits.
-const _: () = assert!(CLOTH_JOINT_COUNT + ROWS * COLUMNS <= 256);
+const _: () = assert!(CLOTH_JOINT_COUNT + TRESS_JOINT_COUNT + ROWS * COLUMNS <= 256);
 
 /// Steps, and how far the points sink in the first of them, metres.
 const STEPS: usize = 18;
@@ -43,6 +45,8 @@ const OUT_M: [f64; 2] = [0.008, 0.016];
 const CLEAR_M: [f64; 2] = [0.004, 0.05];
 /// The same over the ground.
 const FLOOR_M: f64 = 0.012;
+/// The same over a seat.
+const SEAT_M: f64 = 0.008;
 /// How much more where hips are bent by a right angle, for what outlines leave out of them.
 const BENT_M: f64 = 0.010;
 /// No point goes farther than this at a step, which is less than a leg is thick.
@@ -50,21 +54,24 @@ const FARTHEST_M: f64 = 0.035;
 /// Steps out of trunk and legs before anything sinks.
 const FIRST_STEPS: usize = 2;
 /// Cloth that is stretched so many times, and more than it was before it sank, is torn and stays
-/// where it started. Of the poses looked at those that are whole came to 2.1 at most, the torn ones
+/// where it started. Of the poses looked at those that are whole came to 3.3 at most, the torn ones
 /// to 4.9 and more.
-const TORN: f64 = 3.0;
+const TORN: f64 = 3.6;
 /// So far below its upper edge the cloth goes its own way, metres, after going with the body down to
-/// [`FIXED_M`] or to where other cloth lies over it.
+/// [`FIXED_M`] or to so far below where other cloth lies over it.
 const LOOSENS_M: f32 = 0.10;
 const FIXED_M: f32 = 0.14;
+const UNDER_M: f32 = 0.03;
 
 /// A net over cloth at rest, row by row.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Hang {
+    /// Number of its first joint.
+    first: usize,
     /// Model space.
     points_m: Vec<DVec3>,
     /// What would move the points if the cloth had no weight: the skeleton's joints and those
-    /// of [`sway`].
+    /// of [`super::sway`].
     start: Vec<SkinVertex>,
     /// How far below its upper edge the cloth goes with the body, metres.
     fixed_m: f32,
@@ -79,12 +86,13 @@ pub struct Hang {
 
 impl Hang {
     /// A net of points with what would move them, and how far each is from what is under it, metres;
-    /// other cloth lies over it down to a height.
+    /// other cloth lies over it down to a height. Its joints are numbered from `first` on.
     pub(super) fn new(
         points: &[Vec3],
         gaps_m: &[f32],
         start: Vec<SkinVertex>,
         (trunk, covered_y): (&Trunk, Option<f32>),
+        first: usize,
     ) -> Self {
         let rest = trunk.solids(&PosedSkeleton::REST);
         let points_m: Vec<DVec3> = points.iter().map(|p| p.as_dvec3()).collect();
@@ -93,14 +101,14 @@ impl Hang {
             (rest.distance_m(*p) - f64::from(*gap_m) + NEAR_M).clamp(least, most)
         };
         let clear_m = points_m.iter().zip(gaps_m).map(clear).collect();
-        let fixed_m = covered_y.map_or(FIXED_M, |y| FIXED_M.max(points[0].y - y));
+        let fixed_m = covered_y.map_or(FIXED_M, |y| FIXED_M.max(points[0].y - y + UNDER_M));
         let free = |i: usize| {
             let below_m = points[i % COLUMNS].y - points[i].y;
             f64::from(((below_m - fixed_m) / LOOSENS_M).clamp(0.0, 1.0))
         };
         let free: Vec<f64> = (0..points.len()).map(free).collect();
         let deep_m = gaps_m.iter().map(|gap_m| f64::from(*gap_m) - NEAR_M).collect();
-        Self { fixed_m, free, points_m, start, clear_m, deep_m }
+        Self { first, fixed_m, free, points_m, start, clear_m, deep_m }
     }
 
     /// Whether a place in a column is so high that the cloth lies on the hips there.
@@ -123,27 +131,23 @@ impl Hang {
         let (upper, lower) = (height(row), height(row + 1));
         let t = ((upper - y) / (upper - lower).max(1e-6)).clamp(0.0, 1.0);
         let (a, b) = (row * COLUMNS, (row + 1) * COLUMNS);
-        let joints = [a + k, a + next, b + k, b + next].map(|i| (CLOTH_JOINT_COUNT + i) as u8);
+        let joints = [a + k, a + next, b + k, b + next].map(|i| (self.first + i) as u8);
         let shares = [(1.0 - t) * (1.0 - s), (1.0 - t) * s, t * (1.0 - s), t * s];
-        // Rounded sums leave 255 in all.
-        let (mut sum, mut before) = (0.0, 0);
-        let weights = shares.map(|share| {
-            sum += share;
-            let end = (sum * 255.0 + 0.5) as u8;
-            let own = end - before;
-            before = end;
-            own
-        });
-        SkinVertex { joints, weights }
+        SkinVertex::of_shares(joints, shares)
     }
 
-    /// Where the joints of [`sway`] and those of the net go, as [`PosedSkeleton::model_from_rest`]
-    /// has it for the others; `down` is the unit direction of weight in model space.
+    /// Where its joints go, as [`PosedSkeleton::model_from_rest`] has it for the others and `cloth` for
+    /// those of [`super::sway`]; `down` is the unit direction of weight in model space, and `seat`
+    /// what the person sits on.
     #[must_use]
-    pub fn joints(&self, skeleton: &PosedSkeleton, body: &RestBody, down: DVec3) -> Vec<DAffine3> {
+    pub fn joints(
+        &self,
+        skeleton: &PosedSkeleton,
+        (body, cloth): (&RestBody, &[DAffine3; 4]),
+        (down, seat): (DVec3, Option<&SeatBlock>),
+    ) -> Vec<DAffine3> {
         let solids = body.trunk.solids(skeleton);
-        let cloth = sway::joints(skeleton, &body.heads_m);
-        let start_m = self.started(skeleton, &cloth);
+        let start_m = self.started(skeleton, cloth);
         let outwards: Vec<Option<DVec3>> =
             (0..start_m.len()).map(|i| frame(&start_m, i).map(|f| f.y_axis)).collect();
         let mut points_m = start_m.clone();
@@ -181,6 +185,11 @@ impl Hang {
                     *p += out * (-deep_m - (*p - start_m[i]).dot(out)).max(0.0);
                 }
             }
+            if let Some(seat) = seat {
+                for (p, free) in points_m.iter_mut().zip(&self.free) {
+                    *p += seat.way_out_m(*p, SEAT_M) * *free;
+                }
+            }
             // Whoever stands or lies does so on the plane y = 0.
             if down.y < -0.9 {
                 points_m.iter_mut().for_each(|p| p.y = p.y.max(FLOOR_M));
@@ -191,7 +200,7 @@ impl Hang {
         if stretch > TORN && stretch > self.stretch(&start_m) {
             points_m = start_m;
         }
-        cloth.into_iter().chain(self.turned(&points_m, skeleton)).collect()
+        self.turned(&points_m, skeleton)
     }
 
     /// Where skinning would take the points.
@@ -309,6 +318,7 @@ mod tests {
     use crate::geometry::body::rest_body;
     use crate::geometry::phenotype::tests::average;
     use crate::geometry::stance::Stance;
+    use crate::geometry::sway;
     use crate::library::figure::Figure;
     use crate::library::pose::Poses;
     use crate::scene::Sex;
@@ -326,7 +336,7 @@ mod tests {
             })
             .collect();
         let hips = SkinVertex { joints: [0; 4], weights: [255, 0, 0, 0] };
-        Hang::new(&points, &vec![0.05; points.len()], vec![hips; points.len()], (trunk, None))
+        Hang::new(&points, &vec![0.05; points.len()], vec![hips; points.len()], (trunk, None), 60)
     }
 
     fn posed(pose: &str) -> (Hang, Vec<DVec3>, PosedSkeleton, RestBody) {
@@ -336,8 +346,8 @@ mod tests {
         let mut skeleton = PosedSkeleton::of_stance(&body.heads_m, &stance);
         skeleton.ground(body.ground.iter().map(|p| (p.rest_m, p.skin)));
         let hang = tube(&body.trunk, &body.heads_m);
-        let joints = hang.joints(&skeleton, &body, DVec3::NEG_Y);
-        let joints = &joints[CLOTH_JOINT_COUNT - JOINT_COUNT..];
+        let cloth = sway::joints(&skeleton, &body.heads_m);
+        let joints = hang.joints(&skeleton, (&body, &cloth), (DVec3::NEG_Y, None));
         let moved = hang.points_m.iter().zip(joints).map(|(p, j)| j.transform_point3(*p));
         (hang.clone(), moved.collect(), skeleton, body)
     }
@@ -363,8 +373,8 @@ mod tests {
         let figure = Figure::built_in().unwrap();
         let body = rest_body(&figure, &average(Sex::Female), &[]).unwrap();
         let hang = tube(&body.trunk, &body.heads_m);
-        let joints = hang.joints(&PosedSkeleton::REST, &body, DVec3::NEG_Y);
-        let joints = &joints[CLOTH_JOINT_COUNT - JOINT_COUNT..];
+        let rest = [DAffine3::IDENTITY; 4];
+        let joints = hang.joints(&PosedSkeleton::REST, (&body, &rest), (DVec3::NEG_Y, None));
         for (p, joint) in hang.points_m.iter().zip(joints) {
             assert!(joint.transform_point3(*p).distance(*p) < 0.03, "{p}");
         }
@@ -378,8 +388,7 @@ mod tests {
         for i in [0, 30, 77, 150] {
             let s = hang.weights(hang.points_m[i].as_vec3(), (i % COLUMNS) as f32 / COLUMNS as f32);
             assert_eq!(s.weights.iter().map(|w| u32::from(*w)).sum::<u32>(), 255);
-            let own =
-                s.joints.iter().zip(s.weights).find(|j| usize::from(*j.0) == CLOTH_JOINT_COUNT + i);
+            let own = s.joints.iter().zip(s.weights).find(|j| usize::from(*j.0) == hang.first + i);
             assert!(own.is_some_and(|j| j.1 > 250), "{i} {s:?}");
         }
     }

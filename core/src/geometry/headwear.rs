@@ -279,7 +279,7 @@ impl Hat<'_> {
             .collect();
         let first = mesh.positions.len() as u32;
         let start = mesh.triangles.len();
-        add_grid(mesh, &points, &uvs, wide, true, &|p| self.head.hanging(p));
+        add_grid(mesh, &points, &uvs, wide, true, &|i| self.head.hanging(points[i]));
         let all = mesh.triangles.split_off(start);
         let seen = |t: &Triangle| t.get().iter().any(|v| !ends[(v - first) as usize]);
         mesh.triangles.extend(all.into_iter().filter(seen));

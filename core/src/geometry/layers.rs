@@ -9,6 +9,7 @@ use glam::{DVec3, Vec3, Vec4};
 
 use super::drape::Tube;
 use super::garment::{Cuts, Fields, Piece, Place, step};
+use super::over_seat::span;
 use super::skeleton::{JOINT_COUNT, Limb, Side};
 use crate::library::figure::{ARM_M, Figure, GroupId, Neighbour, Net};
 use crate::scene::{BottomKind, TopKind};
@@ -59,7 +60,7 @@ impl<'a> Shell<'a> {
         Self { figure, lod, positions, normals, places, heads_m, net, bridge }
     }
 
-    fn head(&self, joint: usize) -> Vec3 {
+    pub fn head(&self, joint: usize) -> Vec3 {
         self.heads_m[joint].as_vec3()
     }
 
@@ -294,6 +295,7 @@ pub(super) fn top(
     });
     crease(shell, &mut layer, 0.0010 + 0.22 * cuts.top_m);
     part_legs(shell.places, &mut layer);
+    span(shell, &mut layer);
     keep_over_skirt(shell, &mut layer, skirt);
     layer
 }
@@ -334,6 +336,7 @@ pub(super) fn outer(
     // What is over another layer's creases must not be under them.
     crease(shell, &mut layer, 0.0012 + 0.22 * cuts.outer_m.max(cuts.top_m));
     part_legs(shell.places, &mut layer);
+    span(shell, &mut layer);
     keep_over_skirt(shell, &mut layer, skirt);
     layer
 }

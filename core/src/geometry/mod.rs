@@ -12,10 +12,11 @@
 //! | `shown` | the skin that is not hidden |
 //! | [`surface`] | what the parts of a person look like |
 //! | `garment`, `refine`, `cut`, `lookup` | clothes, cut from a shell along scalar fields |
-//! | `clothes`, `layers`, `drape`, `skirt` | how garments hang, one over the other |
+//! | `clothes`, `layers`, `drape`, `over_seat`, `skirt` | how garments hang, one over the other |
 //! | `hair`, `beard`, `lashes`, `headwear`, `glasses` | what grows and sits on the head |
 //! | [`skeleton`], [`pose`] | joints, and clips and poses retargeted to a body |
-//! | [`hang`], `sway` | joints of cloth that hangs round both legs |
+//! | [`hang`], [`sway`] | joints of cloth that hangs round both legs |
+//! | [`tress`] | joints of hair that hangs |
 //! | [`stance`], `hand` | what joints and fingers are to do |
 //! | [`trunk`], `settle` | keep arms out of trunks, lay bodies on the ground |
 //! | [`seat`] | what sitting people sit on |
@@ -37,6 +38,7 @@ mod headwear;
 mod lashes;
 mod layers;
 mod lookup;
+mod over_seat;
 pub mod person;
 pub mod phenotype;
 pub mod points;
@@ -52,5 +54,6 @@ mod solve;
 pub mod stance;
 pub mod surface;
 pub mod sway;
+pub mod tress;
 pub mod trunk;
 mod wide;

@@ -15,6 +15,8 @@ use super::cut::{Builder, Surface as Cloth, net_normals};
 use super::garment::{self, Cuts};
 use super::hang::Hang;
 use super::shown::Shown;
+use super::sway::CLOTH_JOINT_COUNT;
+use super::tress::Tresses;
 use super::{beard, clothes, glasses, hair, headwear, lashes, phenotype};
 use crate::base::hash::Hasher;
 use crate::library::figure::{Figure, GroupId, LOD_COUNT};
@@ -28,6 +30,8 @@ pub enum PartKind {
     Head,
     /// Bare skin elsewhere.
     Skin,
+    /// What is worn under a skirt: skin in another colour.
+    Underwear,
     /// Eyeballs.
     Eyes,
     /// Teeth.
@@ -80,7 +84,9 @@ pub struct Dressed {
     pub mesh: Arc<Mesh>,
     /// Parts in a fixed order; empty ones are left out.
     pub parts: Vec<Part>,
-    /// What moves a skirt: its joints come after the skeleton's.
+    /// What moves hanging hair: its joints come after those of [`super::sway`].
+    pub tresses: Option<Tresses>,
+    /// What moves a skirt: its joints come last.
     pub hang: Option<Hang>,
 }
 
@@ -91,7 +97,7 @@ pub(super) struct Evaluated<'a> {
     triangles: &'a [u16],
     pub positions: Vec<Vec3>,
     pub normals: Vec<Vec3>,
-    skin: &'a [SkinVertex],
+    pub skin: &'a [SkinVertex],
 }
 
 impl<'a> Evaluated<'a> {
@@ -213,6 +219,13 @@ impl MeshKey {
     }
 }
 
+/// How far hair of a style may hang from where neck and head meet on an adult, wherever down is,
+/// metres; nothing if it keeps to the head.
+#[must_use]
+pub fn hair_reach_m(style: HairStyle) -> Option<f64> {
+    hair::reach_m(style)
+}
+
 /// Vertices of most people, by level of detail.
 const VERTICES: [usize; LOD_COUNT] = [26_000, 12_000, 7_500, 4_000, 2_200];
 
@@ -225,12 +238,13 @@ pub fn dress(figure: &Figure, person: &Person, rest: &RestBody, lod: usize) -> D
     let mut out = Parts { builder: Builder::with_room(VERTICES[lod]), parts: Vec::new() };
     let skin = add_skin(&mut out, figure, person, (rest, &cuts), lod);
     add_face(&mut out, figure, person, (rest, &skin), lod);
-    add_head(&mut out, figure, person, (rest, &skin), lod);
-    let hang = clothes::add(&mut out, figure, rest, &cuts, lod);
+    let tresses = add_head(&mut out, figure, person, (rest, &skin), lod);
+    let first_joint = CLOTH_JOINT_COUNT + tresses.as_ref().map_or(0, Tresses::joint_count);
+    let hang = clothes::add(&mut out, figure, (rest, first_joint), &cuts, lod);
     let mut mesh = out.builder.mesh;
     bound(&mut mesh);
     mesh.shrink_to_fit();
-    Dressed { mesh: Arc::new(mesh), parts: out.parts, hang }
+    Dressed { mesh: Arc::new(mesh), parts: out.parts, tresses, hang }
 }
 
 /// The skin that shows; gives back all of it.
@@ -248,7 +262,14 @@ fn add_skin<'a>(
     let mut skin = shown.evaluate(figure, rest);
     let on = (&mut skin.positions[..], &skin.normals[..]);
     garment::tuck(figure, cuts, places, lod, on, &shown.wanted);
-    for (kind, triangles) in [(PartKind::Head, shown.head), (PartKind::Skin, shown.elsewhere)] {
+    let net = figure.net(GroupId::Skin, lod);
+    let is_under = |t: &u32| {
+        net.triangles[*t as usize].iter().all(|v| cuts.is_underwear(places[usize::from(*v)]))
+    };
+    let (under, bare) = shown.elsewhere.into_iter().partition(is_under);
+    let parts =
+        [(PartKind::Head, shown.head), (PartKind::Skin, bare), (PartKind::Underwear, under)];
+    for (kind, triangles) in parts {
         let range = out.builder.add_whole(&skin.surface(), triangles.into_iter());
         out.add(kind, range, false);
     }
@@ -285,22 +306,23 @@ fn opens_mouth(look: &Look) -> bool {
     })
 }
 
-/// What grows and sits on the head.
+/// What grows and sits on the head; gives what moves hanging hair.
 fn add_head(
     out: &mut Parts,
     figure: &Figure,
     person: &Person,
     (rest, skin): (&RestBody, &Evaluated<'_>),
     lod: usize,
-) {
+) -> Option<Tresses> {
     let look = &person.look;
     let bare = look.hair == HairStyle::Bald && look.headwear.kind == HeadwearKind::None;
     let shaven = matches!(look.beard, BeardStyle::None | BeardStyle::Stubble);
     if bare && shaven && look.glasses == Glasses::None {
-        return;
+        return None;
     }
     let head = hair::Head::new(figure, person, rest, lod, &skin.positions);
-    let [base, locks, light] = hair::add(&mut out.builder.mesh, &head, look.hair);
+    let hair = hair::add(&mut out.builder.mesh, rest, &head, look.hair);
+    let [base, locks, light] = hair.ranges;
     // Hair without locks has no light ones beside which it would have to be dark.
     let plain = locks.is_empty() && light.is_empty();
     out.add(if plain { PartKind::Locks } else { PartKind::Hair }, base, true);
@@ -322,6 +344,7 @@ fn add_head(
         out.add(PartKind::Frame, frame, true);
         out.add(PartKind::Lenses, lenses, true);
     }
+    hair.tresses
 }
 
 /// Sets the sphere round all vertices: the middle of their box and the farthest of them.

@@ -41,6 +41,27 @@ pub struct SeatBlock {
     pub size_m: DVec3,
 }
 
+impl SeatBlock {
+    /// How a point in the block or near it has to move to be so far off its top or its sides.
+    #[must_use]
+    pub fn way_out_m(&self, point_m: DVec3, clear_m: f64) -> DVec3 {
+        let in_block = self.rotation.inverse() * (point_m - self.middle_m);
+        let half_m = self.size_m * 0.5 + clear_m;
+        let sign = DVec3::new(in_block.x, 1.0, in_block.z).signum();
+        let ways_m = half_m - in_block * sign;
+        let least_m = ways_m.min_element();
+        if least_m <= 0.0 {
+            return DVec3::ZERO;
+        }
+        let axis = match least_m {
+            way if way == ways_m.y => DVec3::Y,
+            way if way == ways_m.x => DVec3::X,
+            _ => DVec3::Z,
+        };
+        self.rotation * (axis * sign * least_m)
+    }
+}
+
 /// The block under a posed body on its ground, y = 0; nothing under who sits on the ground itself or
 /// does not sit.
 #[must_use]
@@ -99,6 +120,29 @@ pub fn seat_block(skeleton: &PosedSkeleton, body: &RestBody) -> Option<SeatBlock
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_way_out_of_a_block_is_the_shortest_but_never_downwards() {
+        let rotation = DQuat::from_rotation_y(0.5);
+        let block = SeatBlock {
+            middle_m: DVec3::new(0.0, 0.2, 0.1),
+            rotation,
+            size_m: DVec3::new(0.4, 0.4, 0.5),
+        };
+        let at = |p: DVec3| block.middle_m + rotation * p;
+        for (inside, way) in [
+            (DVec3::new(0.0, 0.15, 0.0), DVec3::new(0.0, 0.06, 0.0)),
+            (DVec3::new(-0.18, -0.1, 0.1), DVec3::new(-0.03, 0.0, 0.0)),
+            (DVec3::new(0.1, 0.0, 0.22), DVec3::new(0.0, 0.0, 0.04)),
+            (DVec3::new(0.0, -0.19, 0.0), DVec3::new(0.21, 0.0, 0.0)),
+            (DVec3::new(0.0, 0.22, 0.0), DVec3::ZERO),
+            (DVec3::new(0.0, 0.0, -0.3), DVec3::ZERO),
+        ] {
+            let found = block.way_out_m(at(inside), 0.01);
+            assert!((found - rotation * way).length() < 1e-12, "{inside}: {found}");
+        }
+    }
+
     use crate::geometry::body::rest_body;
     use crate::geometry::phenotype::tests::average;
     use crate::geometry::stance::Stance;

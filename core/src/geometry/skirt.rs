@@ -2,8 +2,8 @@
 //!
 //! Each ring is the convex hull of what it goes round, so no leg is outside at rest. It moves with
 //! the legs: beside a leg with that leg, between the legs with the one that is ahead in front and
-//! with the other one behind, which is how cloth spans them in a stride. Where nothing is worn over
-//! it, it hangs on a net ([`super::hang`]) that starts so. Tops and trousers are not known here.
+//! with the other one behind, which is how cloth spans them in a stride. It hangs on a net
+//! ([`super::hang`]) that starts so. Tops and trousers are not known here.
 
 use glam::Vec3;
 
@@ -81,8 +81,8 @@ impl Skirt {
         Some(skirt)
     }
 
-    /// The net that can move it.
-    pub fn net(&self, shell: &Shell<'_>, under: (&Trunk, Option<f32>)) -> Hang {
+    /// The net that can move it, its joints numbered from a first one on.
+    pub fn net(&self, shell: &Shell<'_>, under: (&Trunk, Option<f32>), first: usize) -> Hang {
         let rows = self.positions.len() / self.columns;
         let at = |row: f32, column: f32| {
             let (r, k) = ((row as usize).min(rows - 2), column as usize);
@@ -99,7 +99,7 @@ impl Skirt {
             .map(|(row, column)| at(row, column))
             .collect();
         let gaps_m = self.gaps_m(shell, &points);
-        Hang::new(&points, &gaps_m, weights(shell, &points, hang::COLUMNS), under)
+        Hang::new(&points, &gaps_m, weights(shell, &points, hang::COLUMNS), under, first)
     }
 
     /// Distances of points from what the skirt goes round: from the nearest vertex's tangent plane, or

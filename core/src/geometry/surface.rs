@@ -94,6 +94,7 @@ pub fn surface(kind: PartKind, person: &Person) -> Surface {
     match kind {
         PartKind::Head => head_surface(look, person.body.age_years as f32),
         PartKind::Skin => body_surface(look),
+        PartKind::Underwear => plain(mix([0.05; 3], narrow(bottom.color), 0.15), 0.85),
         PartKind::Lashes => plain(lash_color(look), 0.6),
         PartKind::Eyes => eye_surface(look),
         PartKind::Teeth => plain([0.78, 0.74, 0.64], 0.25),

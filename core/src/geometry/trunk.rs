@@ -209,22 +209,39 @@ impl Trunk {
         }
     }
 
-    /// Trunk and legs of a posed skeleton, for what hangs round them.
+    /// The middle of the chest at the height of the armpits at rest, and half its depth, metres.
+    pub(super) fn chest_m(&self) -> (DVec3, f64) {
+        let Outline { high_m, slices, .. } = &self.trunk;
+        let top = slices.iter().rev().find(|slice| !slice.is_empty()).copied().unwrap_or_default();
+        (DVec3::new(0.0, *high_m, top.center_z_m), top.half_depth_m)
+    }
+
+    /// Trunk and legs of a posed skeleton, for what hangs round the hips.
     #[must_use]
     pub fn solids(&self, skeleton: &PosedSkeleton) -> Solids<'_> {
+        self.solids_with(skeleton, &[trunk::HIPS, trunk::SPINE1])
+    }
+
+    /// The same for what hangs over the chest.
+    #[must_use]
+    pub fn upper_solids(&self, skeleton: &PosedSkeleton) -> Solids<'_> {
+        self.solids_with(skeleton, &[trunk::SPINE2])
+    }
+
+    /// The trunk stands once for each of some joints of the spine.
+    fn solids_with(&self, skeleton: &PosedSkeleton, spine: &[usize]) -> Solids<'_> {
         let bones = &skeleton.model_from_rest;
         let outline = |outline, joint: usize| (outline, bones[joint], bones[joint].inverse());
         let of = |side: Side, limb: Limb| side.joint(limb);
         let [left, right] = Side::BOTH;
-        let spine = |joint: usize| outline(&self.trunk, joint);
-        let outlines = [
+        let legs = [
             outline(&self.thighs[0], of(left, Limb::UpLeg)),
             outline(&self.thighs[1], of(right, Limb::UpLeg)),
             outline(&self.shins[0], of(left, Limb::Leg)),
             outline(&self.shins[1], of(right, Limb::Leg)),
-            spine(trunk::HIPS),
-            spine(trunk::SPINE1),
         ];
+        let trunks = spine.iter().map(|joint| outline(&self.trunk, *joint));
+        let outlines = legs.into_iter().chain(trunks).collect();
         let balls = Side::BOTH.map(|side| {
             let [hip, knee] = self.balls[side as usize];
             let thigh = bones[of(side, Limb::UpLeg)];
@@ -341,7 +358,7 @@ impl Trunk {
 /// Trunk and legs of a posed body.
 pub struct Solids<'a> {
     /// With the joint that moves each, and its inverse.
-    outlines: [(&'a Outline, DAffine3, DAffine3); 6],
+    outlines: Vec<(&'a Outline, DAffine3, DAffine3)>,
     /// Centre and radius of hips and knees, left and right.
     balls: [[(DVec3, f64); 2]; 2],
 }

@@ -192,6 +192,22 @@ pub struct SkinVertex {
     pub weights: [u8; 4],
 }
 
+impl SkinVertex {
+    /// Joints with shares that sum to 1: rounded so that the weights sum to 255.
+    #[must_use]
+    pub fn of_shares(joints: [u8; 4], shares: [f64; 4]) -> Self {
+        let (mut sum, mut before) = (0.0, 0);
+        let weights = shares.map(|share| {
+            sum += share;
+            let end = (sum * 255.0 + 0.5) as u8;
+            let own = end - before;
+            before = end;
+            own
+        });
+        Self { joints, weights }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

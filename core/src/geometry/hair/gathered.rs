@@ -23,7 +23,8 @@ pub(super) fn add_cores(grower: &Grower<'_>, mesh: &mut Mesh) {
         Tail::None => {}
         Tail::Ponytail => {
             let path = ponytail(grower).resampled(points);
-            tube(mesh, &path, sides, |t| s * ponytail_radius(t), &|p| grower.head.hanging(p));
+            let moves = grower.moves(&path.points);
+            tube(mesh, &path, sides, |t| s * ponytail_radius(t), &moves);
         }
         Tail::Bun => {
             let (root, center) = bun(grower);
@@ -62,7 +63,7 @@ pub(super) fn add_locks(grower: &Grower<'_>, mesh: &mut Mesh, tone: usize) {
 }
 
 /// The middle line of the tail: off the head, then down the back.
-fn ponytail(grower: &Grower<'_>) -> Path {
+pub(super) fn ponytail(grower: &Grower<'_>) -> Path {
     let head = grower.head;
     let s = grower.scale();
     let root = head.scalp.at(style::TIE_HIGH.0, style::TIE_HIGH.1);
@@ -126,7 +127,7 @@ fn ponytail_locks(grower: &Grower<'_>, mesh: &mut Mesh, tone: usize) {
             u: dice.unit() * 4.0,
             end: grower.end(false),
         };
-        ribbon.add(mesh, &piece.resampled(points), &|p| grower.head.hanging(p));
+        ribbon.add(mesh, &piece.resampled(points), &grower.moves(&middle.points));
     }
 }
 
@@ -176,8 +177,8 @@ fn bun_locks(grower: &Grower<'_>, mesh: &mut Mesh, tone: usize) {
     }
 }
 
-/// Three strands plaited from behind an ear over the front of the shoulder.
-fn braid(grower: &Grower<'_>, mesh: &mut Mesh, side: f32, sides: usize) {
+/// The middle line of a braid: from behind an ear over the front of the shoulder.
+pub(super) fn braid_line(grower: &Grower<'_>, side: f32) -> Path {
     let head = grower.head;
     let s = grower.scale();
     let frame = &head.scalp.frame;
@@ -191,11 +192,17 @@ fn braid(grower: &Grower<'_>, mesh: &mut Mesh, side: f32, sides: usize) {
         Vec3::new(0.05 * side * neck, -1.0, 1.1 * neck + 0.25 * super::step(0.50, 0.56, l.y))
     };
     let comb = Comb { near: &head.near, frame, flow: &flow, yields: 0.4, clings: 0.0, hugs_y: 2.0 };
-    let middle = comb.line(&root, (0.0, 0.012 * s), |_, l| l.y < 0.44, |_| 0.013 * s);
+    comb.line(&root, (0.0, 0.012 * s), |_, l| l.y < 0.44, |_| 0.013 * s)
+}
+
+/// Three strands plaited along that line.
+fn braid(grower: &Grower<'_>, mesh: &mut Mesh, side: f32, sides: usize) {
+    let head = grower.head;
+    let s = grower.scale();
     let points = [30, 16, 9, 5, 4][head.lod];
-    let middle = middle.resampled(points);
+    let middle = braid_line(grower, side).resampled(points);
     let length = middle.length();
-    let hanging = |p: Vec3| head.hanging(p);
+    let hanging = grower.moves(&middle.points);
     if head.lod > 2 {
         tube(mesh, &middle, sides, |t| s * 0.013 * (1.0 - 0.5 * t), &hanging);
         return;

@@ -14,9 +14,11 @@
 //! | `strand` | combs a line over them and makes a ribbon or a tube of it |
 //! | `style` | the table of styles |
 //! | `gathered` | ponytails, knots and braids |
+//! | `hanging` | what of it moves by its own weight |
 
 mod cap;
 mod gathered;
+mod hanging;
 pub(super) mod near;
 pub(super) mod scalp;
 pub(super) mod strand;
@@ -26,12 +28,15 @@ use std::ops::Range;
 
 use glam::Vec3;
 
+use self::hanging::FIRST;
+pub(super) use self::hanging::reach_m;
 use self::near::Near;
 use self::scalp::{COLUMNS, Root, Scalp};
 use self::strand::{Comb, Dice, End, Path, Ribbon, UV_PER_M, push};
 use self::style::{Form, Length, Locks, Tail};
 use super::body::RestBody;
 use super::garment::step;
+use super::tress::Tresses;
 use crate::base::hash::Hasher;
 use crate::library::figure::Figure;
 use crate::library::mesh::{Cutout, Mesh, SkinVertex, Triangle};
@@ -44,6 +49,9 @@ const LEVELS: [(f32, f32, f32); 3] = [(0.7, 1.4, 1.3), (0.22, 1.9, 0.6), (0.1, 2
 const STRAND_M: f32 = 0.0011;
 /// What a hood that is not worn adds to that behind the neck.
 const HOOD_M: f32 = 0.026;
+/// The sheet of hair under the locks is torn where it would be wider than this between two of its
+/// columns.
+const PARTS_M: f32 = 0.05;
 /// Roots start a little under the skin.
 const SUNK_M: f32 = 0.0014;
 
@@ -162,13 +170,23 @@ pub(super) fn cutout(style: HairStyle, lod: usize) -> Option<Cutout> {
     strands(lod, locks.length.frayed_m())
 }
 
-/// Adds a person's hair: the ranges of what lies underneath, of the locks, and of the light ones.
-pub(super) fn add(mesh: &mut Mesh, head: &Head, style: HairStyle) -> [Range<u32>; 3] {
+/// What was added to a mesh.
+pub(super) struct Added {
+    /// Triangles of what lies underneath, of the locks, and of the light ones.
+    pub ranges: [Range<u32>; 3],
+    /// What moves those that hang.
+    pub tresses: Option<Tresses>,
+}
+
+/// Adds a person's hair.
+pub(super) fn add(mesh: &mut Mesh, body: &RestBody, head: &Head, style: HairStyle) -> Added {
     let start = mesh.triangles.len() as u32;
     let mut ends = [start; 3];
+    let mut tresses = None;
     let covered = head.headwear == HeadwearKind::Headscarf;
     if let Some(form) = style::form(style).filter(|_| !covered) {
-        let grower = Grower { head, form: &form, style };
+        let mut grower = Grower { head, form: &form, style, tresses: None };
+        grower.tresses = grower.hang(body);
         grower.cap(mesh);
         if let Some(y) = form.sheet_y {
             grower.sheet(mesh, y);
@@ -187,8 +205,9 @@ pub(super) fn add(mesh: &mut Mesh, head: &Head, style: HairStyle) -> [Range<u32>
             }
             ends[end] = mesh.triangles.len() as u32;
         }
+        tresses = grower.tresses;
     }
-    [start..ends[0], ends[0]..ends[1], ends[1]..ends[2]]
+    Added { ranges: [start..ends[0], ends[0]..ends[1], ends[1]..ends[2]], tresses }
 }
 
 /// Grows one person's hair.
@@ -196,6 +215,8 @@ struct Grower<'a> {
     head: &'a Head,
     form: &'a Form,
     style: HairStyle,
+    /// What moves the hair that hangs.
+    tresses: Option<Tresses>,
 }
 
 impl Grower<'_> {
@@ -217,6 +238,17 @@ impl Grower<'_> {
             }
             _ => 0.030,
         }
+    }
+
+    /// How the person wears the style: long hair lies in front of a shoulder or behind it.
+    fn worn(&self) -> style::Worn {
+        let long = matches!(self.style, HairStyle::LongStraight | HairStyle::LongWavy);
+        let front_z = [2, 3].map(|side| match long {
+            true if Dice::new(self.head.seed, side).unit() < 0.3 => 0.035,
+            true => f32::MAX,
+            false => 0.060,
+        });
+        style::Worn { part_x: self.part_x(), front_z }
     }
 
     fn comb<'a>(&'a self, locks: &Locks, flow: &'a dyn Fn(Vec3, &Root) -> Vec3) -> Comb<'a> {
@@ -246,16 +278,16 @@ impl Grower<'_> {
     /// The line of one lock.
     fn line(&self, locks: &Locks, root: &Root, dice: &mut Dice) -> Path {
         let s = self.scale();
-        let part_x = self.part_x();
+        let worn = self.worn();
         let tie = if self.form.tail == Tail::Braids {
-            self.side_tie(if root.local.x > part_x { 1.0 } else { -1.0 })
+            self.side_tie(if root.local.x > worn.part_x { 1.0 } else { -1.0 })
         } else {
             self.tie()
         };
         let stray = Vec3::new(dice.range(-1.0, 1.0), dice.range(-1.0, 1.0), dice.range(-1.0, 1.0));
         let stray = stray * if locks.clings > 0.9 { 0.02 } else { 0.16 };
         let flow = |l: Vec3, root: &Root| {
-            let d = style::direction(locks.flow, l, root, part_x, tie);
+            let d = style::direction(locks.flow, l, root, &worn, tie);
             d.normalize_or(Vec3::NEG_Y) + stray
         };
         let comb = self.comb(locks, &flow);
@@ -299,7 +331,6 @@ impl Grower<'_> {
         let (share, wide, fine) = LEVELS[self.head.lod];
         let count = (locks.count as f32 * share) as usize;
         let points = ((locks.points as f32 * fine) as usize).max(3);
-        let skin = |p: Vec3| self.skin(p);
         for i in 0..count {
             let mut dice = Dice::new(self.head.seed, 16 + i as u64);
             if usize::from(dice.unit() < 0.35) != tone {
@@ -326,7 +357,7 @@ impl Grower<'_> {
                 u: dice.unit() * 4.0,
                 end: self.end(locks.tuft),
             };
-            ribbon.add(mesh, &path, &skin);
+            ribbon.add(mesh, &path, &self.moves(&path.points));
         }
     }
 
@@ -346,7 +377,7 @@ impl Grower<'_> {
             return 0.0;
         }
         match self.style {
-            HairStyle::Balding => step(0.04, 0.30, style::wreath(root.local)),
+            HairStyle::Balding => step(0.0, 0.7, style::wreath(root.local)),
             // So short that ends beyond the border would be specks.
             HairStyle::Cropped | HairStyle::CrewCut => step(0.003, 0.009, root.depth),
             // Ends at the hairline frame the face.
@@ -363,19 +394,14 @@ impl Grower<'_> {
         }
     }
 
-    fn skin(&self, p: Vec3) -> SkinVertex {
-        if self.form.sheet_y.is_some() { self.head.hanging(p) } else { self.head.on_head() }
-    }
-
     /// A sheet of hair from temple round the back to temple, under the locks.
     fn sheet(&self, mesh: &mut Mesh, end_y: f32) {
-        const FIRST: usize = 11;
         let Some(locks) = &self.form.locks else { return };
         let (every, rows) = [(2, 12), (2, 9), (3, 6), (6, 5), (6, 4)][self.head.lod];
         let straight = Locks { curl: None, clings: 0.5, ..*locks };
-        let flow = |l: Vec3, root: &Root| {
-            style::direction(style::Flow::Fall, l, root, self.part_x(), self.tie())
-        };
+        let worn = self.worn();
+        let flow =
+            |l: Vec3, root: &Root| style::direction(style::Flow::Fall, l, root, &worn, self.tie());
         let comb = self.comb(&straight, &flow);
         let s = self.scale();
         let columns: Vec<usize> = (FIRST..=COLUMNS - FIRST).step_by(every).collect();
@@ -397,19 +423,30 @@ impl Grower<'_> {
                 uvs.push([column as f32 * 4.0 / COLUMNS as f32, 0.5 + way * UV_PER_M[1]]);
             }
         }
-        add_grid(mesh, &points, &uvs, rows, false, &|p| self.head.hanging(p));
+        let moves: Vec<_> = points.chunks(rows).map(|line| self.moves(line)).collect();
+        let skin = |i: usize| moves[i / rows](points[i]);
+        let (first, start) = (mesh.positions.len() as u32, mesh.triangles.len());
+        add_grid(mesh, &points, &uvs, rows, false, &skin);
+        // It parts over the shoulders, where some of it falls in front and some behind.
+        let added = mesh.triangles.split_off(start);
+        let parts = |t: &Triangle| {
+            let p = t.get().map(|v| points[(v - first) as usize]);
+            (0..3).any(|i| (p[i] - p[(i + 1) % 3]).length() > PARTS_M * s)
+        };
+        mesh.triangles.extend(added.into_iter().filter(|t| !parts(t)));
     }
 }
 
 /// Adds a grid of points, `across` in a row, with smooth normals. Its front is where columns run
-/// to the right and rows down; where it is a ring, the first and the last column meet.
+/// to the right and rows down; where it is a ring, the first and the last column meet. `skin` gives
+/// the joints of a point by its number.
 pub(super) fn add_grid(
     mesh: &mut Mesh,
     points: &[Vec3],
     uvs: &[[f32; 2]],
     across: usize,
     ring: bool,
-    skin: &dyn Fn(Vec3) -> SkinVertex,
+    skin: &dyn Fn(usize) -> SkinVertex,
 ) {
     let rows = points.len() / across;
     let first = mesh.positions.len() as u32;
@@ -434,7 +471,7 @@ pub(super) fn add_grid(
                 n = if n.y < 0.0 { -n } else { n };
             }
             let i = row * across + column;
-            push(mesh, points[i], n.normalize_or(Vec3::Y), uvs[i], skin(points[i]));
+            push(mesh, points[i], n.normalize_or(Vec3::Y), uvs[i], skin(i));
         }
     }
     for row in 1..rows {

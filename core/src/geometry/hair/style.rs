@@ -83,6 +83,8 @@ pub(super) struct Locks {
 pub(super) enum Flow {
     /// Away from the whorl on the crown, forwards in front.
     Whorl,
+    /// Down and a little back.
+    Side,
     /// Upwards on top, down at the sides.
     Brush,
     /// Away from a parting, back and down at the sides.
@@ -159,12 +161,13 @@ pub(super) fn form(style: HairStyle) -> Option<Form> {
         HairStyle::Balding => Form {
             cap: Cap { thick_m: 0.0042, taper_m: 0.020, side: 1.0, ..close },
             locks: Some(Locks {
-                count: 380,
-                length: Length::Between(0.012, 0.022),
-                width_m: 0.0075,
-                clear_m: (0.001, 0.004),
-                layer_m: 0.002,
+                count: 620,
+                length: Length::Between(0.018, 0.032),
+                width_m: 0.0052,
+                clear_m: (0.0015, 0.004),
+                layer_m: 0.001,
                 clings: 0.9,
+                flow: Flow::Side,
                 ..LOOSE
             }),
             ..none
@@ -350,12 +353,24 @@ pub(super) fn side_tie(side: f32) -> Vec3 {
     Vec3::new(0.060 * side, 0.690, -0.026)
 }
 
-/// Direction of the hair at a local place for a root; `part_x` is where the parting runs and `tie`
-/// the place of the tie to which the root's hair goes.
-pub(super) fn direction(flow: Flow, l: Vec3, root: &Root, part_x: f32, tie: Vec3) -> Vec3 {
+/// How somebody wears a style; local coordinates.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Worn {
+    /// Where the parting runs.
+    pub part_x: f32,
+    /// Of the roots on the left and on the right, those before it have their hair in front of the
+    /// shoulder.
+    pub front_z: [f32; 2],
+}
+
+/// Direction of the hair at a local place for a root; `tie` is the place of the tie to which the
+/// root's hair goes.
+pub(super) fn direction(flow: Flow, l: Vec3, root: &Root, worn: &Worn, tie: Vec3) -> Vec3 {
+    let part_x = worn.part_x;
     let away = if root.local.x > part_x { 1.0 } else { -1.0 };
     let top = step(0.772, 0.806, l.y);
     let front = step(0.03, 0.10, l.z);
+    let side = Vec3::new(0.15 * away, -1.0, -0.45);
     match flow {
         Flow::Whorl => {
             let d = l - Vec3::new(-0.008, 0.856, -0.012);
@@ -366,9 +381,9 @@ pub(super) fn direction(flow: Flow, l: Vec3, root: &Root, part_x: f32, tie: Vec3
             let down = Vec3::new(0.0, -1.0, -0.15);
             down.lerp(up, step(0.795, 0.820, l.y))
         }
+        Flow::Side => side,
         Flow::Parting => {
             let over = Vec3::new(away, -0.20, 0.10 - 0.55 * front);
-            let side = Vec3::new(0.15 * away, -1.0, -0.45);
             side.lerp(over, top)
         }
         Flow::Fringe => {
@@ -384,12 +399,12 @@ pub(super) fn direction(flow: Flow, l: Vec3, root: &Root, part_x: f32, tie: Vec3
             let hang = Vec3::new(away * (0.05 + 0.5 * face), -1.0, -0.10 - 0.65 * face);
             let hang = hang.lerp(over, top * (1.0 - step(0.035, 0.070, l.x.abs())));
             // Before the shoulders it gathers in front of them or behind them.
-            let low = 1.0 - step(0.60, 0.68, l.y);
-            let in_front = root.local.z > 0.060;
+            let low = 1.0 - step(0.62, 0.70, l.y);
+            let in_front = root.local.z > worn.front_z[usize::from(root.local.x < 0.0)];
             let goal = if in_front {
-                Vec3::new(0.086 * away, 0.0, 0.125)
+                Vec3::new(l.x.abs().clamp(0.055, 0.095) * away, 0.0, 0.075)
             } else {
-                Vec3::new(l.x.clamp(-0.095, 0.095), 0.0, -0.085)
+                Vec3::new(l.x.clamp(-0.085, 0.085), 0.0, -0.085)
             };
             hang + Vec3::new((goal.x - l.x) * 16.0, 0.0, (goal.z - l.z) * 12.0) * low
         }

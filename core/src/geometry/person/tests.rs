@@ -6,6 +6,11 @@ use crate::geometry::clothes::Worn;
 use crate::geometry::garment::Piece;
 use crate::geometry::layers::Shell;
 use crate::geometry::phenotype::tests::average;
+use crate::geometry::pose::PosedSkeleton;
+use crate::geometry::skeleton::trunk;
+use crate::geometry::stance::Stance;
+use crate::geometry::sway;
+use crate::library::pose::Poses;
 use crate::scene::{
     Bottom, BottomKind, Headwear, Outer, OuterKind, Placement, Pose, Sex, ShoeKind, Shoes, Top,
     TopKind,
@@ -212,7 +217,7 @@ fn with_clothes(
     let places = figure.places(GroupId::Shell, body.positions.len() as u32);
     let on = (&body.positions[..], &body.normals[..]);
     let shell = Shell::new(figure, lod, on, places, &rest.heads_m);
-    look(&body, &shell, &Worn::new(&shell, &cuts, &rest.trunk), &cuts, &rest);
+    look(&body, &shell, &Worn::new(&shell, &cuts, (&rest.trunk, 56)), &cuts, &rest);
 }
 
 /// Skin that is drawn although it is under a garment lies below the cloth: going out along
@@ -409,10 +414,48 @@ fn reach_bounds_hair_and_hats() {
         let vertices = triangles.flat_map(|t| d.mesh.triangles[t as usize].get());
         for v in vertices.map(|v| v as usize) {
             let (q, s) = (Vec3::from_array(d.mesh.positions[v]), &d.mesh.skin[v]);
-            for (&j, _) in s.joints.iter().zip(&s.weights).filter(|w| *w.1 > 0) {
+            // Those of hanging hair have a bound of their own.
+            let of_body = |w: &(&u8, &u8)| *w.1 > 0 && usize::from(*w.0) < CLOTH_JOINT_COUNT;
+            for (&j, _) in s.joints.iter().zip(&s.weights).filter(of_body) {
                 let j = usize::from(j);
                 let far = f64::from((q - rest.heads_m[j].as_vec3()).length());
                 assert!(far <= rest.reach_m[j], "{style:?} {i} joint {j}: {far}");
+            }
+        }
+    }
+}
+
+#[test]
+fn no_hair_hangs_farther_than_its_bound() {
+    let figure = Figure::built_in().unwrap();
+    for (i, style) in HairStyle::ALL.into_iter().enumerate() {
+        let mut p = person(i);
+        p.look.hair = style;
+        let rest = rest_body(&figure, &p.body, &p.look.face).unwrap();
+        let d = dress(&figure, &p, &rest, 0);
+        assert!(d.tresses.is_none() || hair_reach_m(style).is_some(), "{style:?}");
+        let (Some(tresses), Some(reach_m)) = (&d.tresses, hair_reach_m(style)) else { continue };
+        let reach_m = reach_m * rest.head_scale * f64::from(rest.shape.scale);
+        let triangles = d.parts.iter().filter(|part| HAIR.contains(&part.kind));
+        let triangles = triangles.flat_map(|part| part.triangles.clone());
+        let vertices: Vec<u32> =
+            triangles.flat_map(|t| d.mesh.triangles[t as usize].get()).collect();
+        for pose in ["pose/standing_at_ease", "pose/handstand", "pose/lying_on_back"] {
+            let stance = Stance::of_pose(Poses::built_in().get(pose).unwrap());
+            let skeleton = PosedSkeleton::of_stance(&rest.heads_m, &stance);
+            let mut joints = skeleton.model_from_rest.to_vec();
+            joints.extend(sway::joints(&skeleton, &rest.heads_m));
+            joints.extend(tresses.joints(&skeleton, &rest, DVec3::NEG_Y));
+            let head_m = skeleton.joint_m(trunk::HEAD, rest.heads_m[trunk::HEAD]);
+            for v in vertices.iter().map(|v| *v as usize) {
+                let q = Vec3::from_array(d.mesh.positions[v]).as_dvec3();
+                let s = &d.mesh.skin[v];
+                let by = |(j, w): (&u8, &u8)| {
+                    joints[usize::from(*j)].transform_point3(q) * (f64::from(*w) / 255.0)
+                };
+                let at: DVec3 = s.joints.iter().zip(&s.weights).map(by).sum();
+                let far_m = at.distance(head_m);
+                assert!(far_m <= reach_m, "{style:?} {i} {pose}: {far_m} {reach_m}");
             }
         }
     }

@@ -46,9 +46,11 @@ fn step(a: f32, b: f32, x: f32) -> f32 {
 #[must_use]
 pub fn wreath([x, y, z]: [f32; 3]) -> f32 {
     // The edge runs higher at the back than at the temples.
-    let edge = 0.790 + 0.012 * step(0.02, -0.06, z) - 0.10 * step(0.07, 0.15, z);
+    let edge = 0.790 + 0.012 * step(0.02, -0.06, z)
+        - 0.06 * step(0.03, 0.09, z)
+        - 0.06 * step(0.08, 0.15, z);
     let wavy = 0.003 * libm::sinf(140.0 * x + 60.0 * z);
-    step(edge + 0.012 + wavy, edge - 0.012 + wavy, y)
+    step(edge + 0.016 + wavy, edge - 0.016 + wavy, y)
 }
 
 /// About the distance inside the border of a beard, metres; negative where none grows.
