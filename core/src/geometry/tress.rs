@@ -43,6 +43,8 @@ const STIFF: f64 = 0.25;
 /// metres.
 const SLID: f64 = 0.3;
 const SLID_M: f64 = 0.02;
+/// The same where it does not hang down but lies on the back.
+const LIES_M: f64 = 0.014;
 /// The same over the ground.
 const FLOOR_M: f64 = 0.01;
 /// How far weight turns each link from where it would go with the head: it is stiff at its root.
@@ -172,10 +174,12 @@ impl Tresses {
                     let mut p = points_m[i - 1] + way.lerp(ways[i - 1], PULL);
                     // Where it has slid to, its distance at rest tells less.
                     let slid_m = chest_from_model.transform_point3(p).distance(rest_m[i]);
-                    p += solids.way_out_m(p, of_trunk_m + (SLID * slid_m).min(SLID_M));
+                    let more_m = (SLID * slid_m).min(SLID_M) + LIES_M * plumb;
+                    p += solids.way_out_m(p, of_trunk_m + more_m);
                     for (part, (ends, clear_m)) in parts.iter().zip(of_parts_m).enumerate() {
                         let (distance_m, out) = distance(ends, p);
-                        if distance_m < *clear_m {
+                        let clear_m = clear_m + if part < BACK { LIES_M * plumb } else { 0.0 };
+                        if distance_m < clear_m {
                             let inwards = -chest_from_model.transform_point3(p).x.signum();
                             // It gathers between the arms rather than on them.
                             let aside = if part < ARMS {
