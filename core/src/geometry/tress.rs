@@ -47,6 +47,8 @@ const SLID_M: f64 = 0.02;
 const LIES_M: f64 = 0.014;
 /// The same over the ground.
 const FLOOR_M: f64 = 0.01;
+/// What is beside a link turns with it by no more than this, beyond what weight turns it, radians.
+const FARTHEST_RAD: f64 = 0.9;
 /// How far weight turns each link from where it would go with the head: it is stiff at its root.
 const YIELDS: [f64; LINKS] = [0.55, 0.85, 0.95, 1.0];
 /// How far a link goes with the chest's direction rather than with the head's.
@@ -72,15 +74,18 @@ pub struct Tresses {
     /// Distance that each point keeps from trunk and legs, and from each part.
     clear_m: Vec<Points<(f64, [f64; PARTS])>>,
     parts: [Part; PARTS],
+    /// How far it yields to weight: 1 all the way, 0 not at all.
+    yields: f64,
 }
 
 impl Tresses {
-    /// Chains over hair; `scale` is that of the head, and `head` its places from template
-    /// coordinates.
+    /// Chains over hair that yields to weight by a share; `scale` is that of the head, and `head` its
+    /// places from template coordinates.
     pub(super) fn new(
         chains: &[Points<Vec3>],
         body: &RestBody,
         (head, scale): (&dyn Fn(Vec3) -> Vec3, f32),
+        yields: f64,
     ) -> Self {
         let parts = parts(body, head, f64::from(scale));
         let solids = body.trunk.upper_solids(&PosedSkeleton::REST);
@@ -98,7 +103,7 @@ impl Tresses {
         let chains: Vec<Points<DVec3>> =
             chains.iter().map(|chain| chain.map(|p| p.as_dvec3())).collect();
         let clear_m = chains.iter().map(|chain| chain.each_ref().map(clear)).collect();
-        Self { chains, clear_m, parts }
+        Self { chains, clear_m, parts, yields }
     }
 
     /// How many joints they add.
@@ -156,14 +161,15 @@ impl Tresses {
         let [head, chest] =
             [trunk::HEAD, trunk::SPINE2].map(|joint| skeleton.model_from_rest[joint]);
         let chest_from_model = chest.inverse();
-        let (turns, plumb) = (turns(skeleton, down), plumb(skeleton, down));
+        let yields = YIELDS.map(|share| share * self.yields);
+        let (turns, plumb) = (turns(skeleton, down, &yields), plumb(skeleton, down) * self.yields);
         let mut out = Vec::with_capacity(self.joint_count());
         for (rest_m, clear_m) in self.chains.iter().zip(&self.clear_m) {
             let ways: [DVec3; LINKS] = std::array::from_fn(|i| {
                 let way = turns[i] * (rest_m[i + 1] - rest_m[i]);
                 let length = way.length();
                 let stiff = head.transform_vector3(rest_m[i + 1] - rest_m[i]);
-                let hung = way.lerp(down * length, plumb * YIELDS[i]) + stiff * (STIFF * plumb);
+                let hung = way.lerp(down * length, plumb * yields[i]) + stiff * (STIFF * plumb);
                 hung.try_normalize().map_or(way, |hung| hung * length)
             });
             let mut points_m = rest_m.map(|p| head.transform_point3(p));
@@ -202,8 +208,10 @@ impl Tresses {
             out.extend((1..=LINKS).map(|i| {
                 let from = turns[i - 1] * (rest_m[i] - rest_m[i - 1]);
                 let way = points_m[i] - points_m[i - 1];
-                let [from, to] = [from, way].map(|w| w.normalize_or(DVec3::NEG_Y));
-                let turn = DQuat::from_rotation_arc(from, to) * turns[i - 1];
+                // Locks lie beside their chain: they would be flung out by a link that is bent back.
+                let angle = from.angle_between(way).min(FARTHEST_RAD);
+                let axis = from.cross(way).try_normalize().unwrap_or(DVec3::X);
+                let turn = DQuat::from_axis_angle(axis, angle) * turns[i - 1];
                 DAffine3::from_rotation_translation(turn, points_m[i] - turn * rest_m[i])
             }));
         }
@@ -212,12 +220,12 @@ impl Tresses {
 }
 
 /// How each link turns from rest if nothing is in its way.
-fn turns(skeleton: &PosedSkeleton, down: DVec3) -> [DQuat; LINKS] {
+fn turns(skeleton: &PosedSkeleton, down: DVec3, yields: &[f64; LINKS]) -> [DQuat; LINKS] {
     let turn = |joint: usize| DQuat::from_mat3(&skeleton.model_from_rest[joint].matrix3);
     let [head, chest] = [trunk::HEAD, trunk::SPINE2].map(turn);
     std::array::from_fn(|i| {
-        let hangs = |turn: DQuat| upright(turn, down, YIELDS[i]) * turn;
-        hangs(head).slerp(hangs(chest), CHEST[i])
+        let hangs = |turn: DQuat| upright(turn, down, yields[i]) * turn;
+        hangs(head).slerp(hangs(chest), CHEST[i] * yields[i])
     })
 }
 
@@ -317,7 +325,7 @@ mod tests {
             chain(-0.06, -0.14),
             chain(-0.08, 0.10),
         ];
-        Tresses::new(&chains, body, (&|p| p, 1.0))
+        Tresses::new(&chains, body, (&|p| p, 1.0), 1.0)
     }
 
     fn body() -> RestBody {

@@ -37,7 +37,9 @@ impl Grower<'_> {
         let chains: Vec<_> = lines.iter().filter_map(|line| self.chain(line)).collect();
         let frame = &self.head.scalp.frame;
         let head = |p: Vec3| frame.world(p);
-        (!chains.is_empty()).then(|| Tresses::new(&chains, body, (&head, frame.scale)))
+        // Curls hold their shape.
+        let yields = if self.style == HairStyle::Curly { 0.3 } else { 1.0 };
+        (!chains.is_empty()).then(|| Tresses::new(&chains, body, (&head, frame.scale), yields))
     }
 
     /// What moves a lock that has such points.
