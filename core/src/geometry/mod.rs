@@ -11,7 +11,8 @@
 //! | [`person`] | a dressed person at rest: skin, eyes, hair and clothes as one mesh |
 //! | `shown` | the skin that is not hidden |
 //! | [`surface`] | what the parts of a person look like |
-//! | `garment`, `refine`, `cut`, `lookup` | clothes, cut from a shell along scalar fields |
+//! | `shell` | the surface out of which clothes are made |
+//! | `garment`, `refine`, `cut`, `lookup` | clothes, cut from it along scalar fields |
 //! | `clothes`, `layers`, `drape`, `over_seat`, `skirt` | how garments hang, one over the other |
 //! | `hair`, `beard`, `lashes`, `headwear`, `glasses` | what grows and sits on the head |
 //! | [`skeleton`], [`pose`] | joints, and clips and poses retargeted to a body |
@@ -47,6 +48,7 @@ mod refine;
 pub mod seat;
 mod settle;
 pub mod shape;
+mod shell;
 mod shown;
 pub mod skeleton;
 mod skirt;

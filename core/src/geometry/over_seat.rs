@@ -6,7 +6,7 @@
 use glam::{Vec3, Vec4};
 
 use super::garment::{Place, step};
-use super::layers::Shell;
+use super::shell::Shell;
 use super::skeleton::{Limb, Side, trunk};
 use crate::library::figure::Neighbour;
 use crate::library::mesh::SkinVertex;

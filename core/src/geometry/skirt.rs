@@ -10,7 +10,7 @@ use glam::Vec3;
 use super::cut::{Builder, Rim, Surface, smooth_normals};
 use super::drape::Tube;
 use super::hang::{self, Hang};
-use super::layers::Shell;
+use super::shell::Shell;
 use super::skeleton::{Limb, Side};
 use super::sway::{self, CLOTH_JOINT_COUNT};
 use super::trunk::Trunk;
