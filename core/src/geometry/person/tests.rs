@@ -399,20 +399,30 @@ fn glasses_and_hats_are_the_same_on_both_sides() {
     }
 }
 
+/// Somebody with hair of a style, at rest and dressed.
+fn with_hair(figure: &Figure, i: usize, style: HairStyle) -> (RestBody, Dressed) {
+    let mut p = person(i);
+    p.look.hair = style;
+    let rest = rest_body(figure, &p.body, &p.look.face).unwrap();
+    let dressed = dress(figure, &p, &rest, 0);
+    (rest, dressed)
+}
+
+/// Vertices of parts, once for each triangle.
+fn vertices(d: &Dressed, kinds: &[PartKind]) -> impl Iterator<Item = usize> {
+    let parts = d.parts.iter().filter(|part| kinds.contains(&part.kind));
+    let triangles = parts.flat_map(|part| part.triangles.clone());
+    triangles.flat_map(|t| d.mesh.triangles[t as usize].get()).map(|v| v as usize)
+}
+
 /// Bounds of what a person covers hold whatever grows and sits on the head.
 #[test]
 fn reach_bounds_hair_and_hats() {
     let figure = Figure::built_in().unwrap();
     for (i, style) in HairStyle::ALL.into_iter().enumerate() {
-        let mut p = person(i);
-        p.look.hair = style;
-        let rest = rest_body(&figure, &p.body, &p.look.face).unwrap();
-        let d = dress(&figure, &p, &rest, 0);
+        let (rest, d) = with_hair(&figure, i, style);
         let kinds = [&HAIR[..], &[PartKind::Headwear, PartKind::Frame, PartKind::Lenses]];
-        let parts = d.parts.iter().filter(|part| kinds.concat().contains(&part.kind));
-        let triangles = parts.flat_map(|part| part.triangles.clone());
-        let vertices = triangles.flat_map(|t| d.mesh.triangles[t as usize].get());
-        for v in vertices.map(|v| v as usize) {
+        for v in vertices(&d, &kinds.concat()) {
             let (q, s) = (Vec3::from_array(d.mesh.positions[v]), &d.mesh.skin[v]);
             // Those of hanging hair have a bound of their own.
             let of_body = |w: &(&u8, &u8)| *w.1 > 0 && usize::from(*w.0) < CLOTH_JOINT_COUNT;
@@ -429,17 +439,10 @@ fn reach_bounds_hair_and_hats() {
 fn no_hair_hangs_farther_than_its_bound() {
     let figure = Figure::built_in().unwrap();
     for (i, style) in HairStyle::ALL.into_iter().enumerate() {
-        let mut p = person(i);
-        p.look.hair = style;
-        let rest = rest_body(&figure, &p.body, &p.look.face).unwrap();
-        let d = dress(&figure, &p, &rest, 0);
+        let (rest, d) = with_hair(&figure, i, style);
         assert!(d.tresses.is_none() || hair_reach_m(style).is_some(), "{style:?}");
         let (Some(tresses), Some(reach_m)) = (&d.tresses, hair_reach_m(style)) else { continue };
         let reach_m = reach_m * rest.head_scale * f64::from(rest.shape.scale);
-        let triangles = d.parts.iter().filter(|part| HAIR.contains(&part.kind));
-        let triangles = triangles.flat_map(|part| part.triangles.clone());
-        let vertices: Vec<u32> =
-            triangles.flat_map(|t| d.mesh.triangles[t as usize].get()).collect();
         for pose in ["pose/standing_at_ease", "pose/handstand", "pose/lying_on_back"] {
             let stance = Stance::of_pose(Poses::built_in().get(pose).unwrap());
             let skeleton = PosedSkeleton::of_stance(&rest.heads_m, &stance);
@@ -447,7 +450,7 @@ fn no_hair_hangs_farther_than_its_bound() {
             joints.extend(sway::joints(&skeleton, &rest.heads_m));
             joints.extend(tresses.joints(&skeleton, &rest, DVec3::NEG_Y));
             let head_m = skeleton.joint_m(trunk::HEAD, rest.heads_m[trunk::HEAD]);
-            for v in vertices.iter().map(|v| *v as usize) {
+            for v in vertices(&d, &HAIR) {
                 let q = Vec3::from_array(d.mesh.positions[v]).as_dvec3();
                 let s = &d.mesh.skin[v];
                 let by = |(j, w): (&u8, &u8)| {
