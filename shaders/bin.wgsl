@@ -4,7 +4,7 @@
 // scan.wgsl lays out one list for each tile; `scatter` fills them, in any order. One
 // invocation takes primitives in turn.
 
-@group(0) @binding(1) var<storage, read> raster_target: Target;
+@group(0) @binding(1) var<uniform> raster_target: Target;
 @group(0) @binding(2) var<storage, read_write> primitives: array<Primitive>;
 @group(0) @binding(3) var<storage, read_write> counters: array<atomic<u32>, 8>;
 @group(0) @binding(4) var<storage, read_write> tiles: array<array<atomic<u32>, 2>>;

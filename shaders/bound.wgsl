@@ -3,7 +3,7 @@
 // Reads placed and projected vertices, grows the boxes: that of object i stands at i + 1, what
 // is seen at 0. One workgroup takes a batch, one invocation eight vertices of it.
 
-@group(0) @binding(1) var<storage, read> raster_target: Target;
+@group(0) @binding(1) var<uniform> raster_target: Target;
 @group(0) @binding(2) var<storage, read> batches: array<VertexBatch>;
 @group(0) @binding(3) var<storage, read> vertices: array<Vertex>;
 @group(0) @binding(4) var<storage, read> screen: array<ScreenVertex>;

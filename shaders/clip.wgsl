@@ -4,7 +4,7 @@
 //
 // Reads the list that the set-up made. One invocation takes triangles in turn.
 
-@group(0) @binding(1) var<storage, read> raster_target: Target;
+@group(0) @binding(1) var<uniform> raster_target: Target;
 @group(0) @binding(2) var<storage, read> batches: array<TriangleBatch>;
 @group(0) @binding(3) var<storage, read> meshes: array<u32>;
 @group(0) @binding(4) var<storage, read> vertices: array<Vertex>;

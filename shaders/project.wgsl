@@ -2,7 +2,7 @@
 //
 // Reads placed vertices, writes projected ones over the camera's, which nobody needs any more.
 
-@group(0) @binding(1) var<storage, read> raster_target: Target;
+@group(0) @binding(1) var<uniform> raster_target: Target;
 @group(0) @binding(2) var<storage, read> batches: array<VertexBatch>;
 @group(0) @binding(3) var<storage, read> vertices: array<Vertex>;
 @group(0) @binding(4) var<storage, read_write> screen: array<ScreenVertex>;

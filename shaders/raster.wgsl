@@ -3,7 +3,7 @@
 // Reads primitives by tile, writes samples, those of a pixel side by side. A workgroup takes as many
 // tiles, side by side, as have 64 invocations.
 
-@group(0) @binding(1) var<storage, read> raster_target: Target;
+@group(0) @binding(1) var<uniform> raster_target: Target;
 @group(0) @binding(2) var<storage, read> primitives: array<Primitive>;
 @group(0) @binding(3) var<storage, read> counters: Counters;
 @group(0) @binding(4) var<storage, read> tiles: array<Tile>;

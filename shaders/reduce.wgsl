@@ -3,7 +3,7 @@
 // Reads samples, adds to the sums. One invocation walks a strip of a row and adds where the
 // object changes. Sums, smallest and largest of whole numbers, so that order does not matter.
 
-@group(0) @binding(1) var<storage, read> raster_target: Target;
+@group(0) @binding(1) var<uniform> raster_target: Target;
 @group(0) @binding(2) var<storage, read> primitives: array<Primitive>;
 @group(0) @binding(3) var<storage, read> surfaces: array<Surface>;
 @group(0) @binding(4) var<storage, read> samples: array<vec2<u32>>;
@@ -18,7 +18,7 @@ fn object_at(index: u32) -> u32 {
     if slot == NOTHING {
         return NOTHING;
     }
-    return surfaces[primitives[slot].draw].object;
+    return surfaces[primitives[slot].draw].flags >> 16u;
 }
 
 @compute @workgroup_size(2, 32)

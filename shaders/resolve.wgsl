@@ -3,7 +3,7 @@
 // Reads samples, writes object plus one (0 for nothing) and bits of the distance along the view
 // axis in metres. One invocation a pixel.
 
-@group(0) @binding(1) var<storage, read> raster_target: Target;
+@group(0) @binding(1) var<uniform> raster_target: Target;
 @group(0) @binding(2) var<storage, read> primitives: array<Primitive>;
 @group(0) @binding(3) var<storage, read> surfaces: array<Surface>;
 @group(0) @binding(4) var<storage, read> samples: array<vec2<u32>>;
@@ -13,7 +13,7 @@ fn object_of(slot: u32) -> u32 {
     if slot == NOTHING {
         return 0u;
     }
-    return surfaces[primitives[slot].draw].object + 1u;
+    return (surfaces[primitives[slot].draw].flags >> 16u) + 1u;
 }
 
 @compute @workgroup_size(8, 8)

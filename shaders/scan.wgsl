@@ -3,7 +3,7 @@
 // Reads the counts of a band's tiles, writes the starts of their lists as ends, which the scatter
 // moves on, and the room that all need. One workgroup; each invocation takes a run of tiles.
 
-@group(0) @binding(1) var<storage, read> raster_target: Target;
+@group(0) @binding(1) var<uniform> raster_target: Target;
 @group(0) @binding(2) var<storage, read_write> tiles: array<Tile>;
 @group(0) @binding(3) var<storage, read_write> counters: Counters;
 

@@ -5,7 +5,7 @@
 // vertices, appends primitives in any order. One workgroup takes a batch, one invocation one
 // triangle.
 
-@group(0) @binding(1) var<storage, read> raster_target: Target;
+@group(0) @binding(1) var<uniform> raster_target: Target;
 @group(0) @binding(2) var<storage, read> batches: array<TriangleBatch>;
 @group(0) @binding(3) var<storage, read> meshes: array<u32>;
 @group(0) @binding(4) var<storage, read> screen: array<ScreenVertex>;

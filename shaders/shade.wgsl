@@ -49,14 +49,25 @@ fn fragment(slot: u32, at: vec2<f32>, pixel: vec2<u32>) -> vec3<f32> {
     let draw = primitives[slot].draw;
     let point = surface_point(primitives[slot].corners, at, surfaces[draw].flags);
     let look = look_at(draw, point);
-    let own = surfaces[draw].own_blockers;
-    let light = reflected(point, look, surfaces[draw].metallic, surfaces[draw].wrap, own);
+    let metallic_wrap = unpack2x16float(surfaces[draw].metallic_wrap);
+    var own = vec2<u32>(0u);
+    if HAS_BLOCKERS {
+        own = surfaces[draw].own_blockers;
+    }
+    let light = reflected(point, look, metallic_wrap.x, metallic_wrap.y, own);
     return developed(light, at, pixel);
 }
 
 // Display light of a pixel whose samples start at `first`.
 fn pixel_color(first: u32, corner: vec2<f32>) -> vec3<f32> {
     let pixel = vec2<u32>(corner);
+    if SAMPLES == 1u {
+        let own = samples[first];
+        if own.x == NOTHING {
+            return developed(backdrop(corner + 0.5), corner + 0.5, pixel);
+        }
+        return fragment(own.x, corner + vec2<f32>(POSITIONS[0]) * (1.0 / 16.0), pixel);
+    }
     var color = vec3<f32>(0.0);
     var nothing = 0u;
     var rest = (1u << SAMPLES) - 1u;

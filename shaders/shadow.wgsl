@@ -3,7 +3,7 @@
 // Eight invocations take primitives in turn, and of each the blocks of 8x8 texels that it may touch;
 // one invocation a column. Depth is 0 where nothing casts.
 
-@group(0) @binding(1) var<storage, read> raster_target: Target;
+@group(0) @binding(1) var<uniform> raster_target: Target;
 @group(0) @binding(2) var<storage, read> primitives: array<Primitive>;
 @group(0) @binding(3) var<storage, read> counters: Counters;
 @group(0) @binding(4) var<storage, read_write> shadow_map: array<atomic<u32>>;

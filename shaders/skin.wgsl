@@ -4,7 +4,7 @@
 // Reads the mesh pool and the palette, writes placed and projected vertices. One workgroup takes
 // a batch of up to 256 vertices of one object, one invocation four of them.
 
-@group(0) @binding(1) var<storage, read> raster_target: Target;
+@group(0) @binding(1) var<uniform> raster_target: Target;
 @group(0) @binding(2) var<storage, read> batches: array<VertexBatch>;
 @group(0) @binding(3) var<storage, read> meshes: array<u32>;
 @group(0) @binding(4) var<storage, read> palette: array<vec4<f32>>;
@@ -37,6 +37,9 @@ fn transform(m: Rows, p: vec3<f32>, w: f32) -> vec3<f32> {
 fn blend(first: u32, joints: u32, weights: u32) -> Rows {
     var sum = Rows(vec4<f32>(0.0), vec4<f32>(0.0), vec4<f32>(0.0));
     for (var k = 0u; k < 4u; k++) {
+        if (weights >> (8u * k)) == 0u {
+            break;
+        }
         let weight = f32((weights >> (8u * k)) & 255u) / 255.0;
         let m = rows_at(first + 3u * ((joints >> (8u * k)) & 255u));
         sum.x += m.x * weight;
@@ -52,15 +55,6 @@ fn vector_at(word: u32) -> vec3<f32> {
         bitcast<f32>(meshes[word + 1u]),
         bitcast<f32>(meshes[word + 2u]),
     );
-}
-
-// A vector of a packed normal's direction: the octahedron unfolded onto a square.
-fn direction(packed: u32) -> vec3<f32> {
-    let units = vec2<i32>(bitcast<i32>(packed << 16u) >> 16u, bitcast<i32>(packed) >> 16u);
-    let flat = vec2<f32>(units) * (1.0 / 32767.0);
-    let z = 1.0 - abs(flat.x) - abs(flat.y);
-    let fold = max(-z, 0.0);
-    return vec3<f32>(select(flat - fold, flat + fold, flat < vec2<f32>(0.0)), z);
 }
 
 fn is_finite(v: vec3<f32>) -> bool {
@@ -88,12 +82,13 @@ fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index
         }
         let position = transform(points, vector_at(word), 1.0);
         let bent = transform(normals, direction(meshes[word + 3u]), 0.0);
-        let normal = bent * (1.0 / sqrt(max(dot(bent, bent), 1e-30)));
         if !(is_finite(position) && is_finite(bent)) {
             atomicMax(&bad_object[3], NOTHING - batch.object);
         }
         let uv = vec2<f32>(bitcast<f32>(meshes[word + 4u]), bitcast<f32>(meshes[word + 5u]));
-        vertices[batch.first + i] = Vertex(position, uv.x, normal, uv.y);
+        vertices[batch.first + i].position = position;
+        vertices[batch.first + i].normal = packed_direction(bent);
+        vertices[batch.first + i].uv = uv;
         screen[batch.first + i] = project(position);
     }
 }

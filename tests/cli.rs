@@ -8,10 +8,11 @@ use std::fs;
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 
-use figurant::road::{Adapter, Import, Job, LoadError, Road, Simd, Wishes};
+use figurant::road::{Adapter, Import, Job, LoadError, ParityWish, Road, Simd, Wishes};
 use figurant::{Console, Exit, Stop};
 use figurant_core::document::cast::Member;
 use figurant_core::export::{DatasetInfo, PictureFormat};
+use figurant_core::job::parity::Difference;
 use figurant_core::job::{FrameMaker, RenderedFrame};
 use figurant_core::label::annotation::{
     Annotations, CameraLabel, Keypoint, PersonLabel, PersonMeta, Visibility,
@@ -223,6 +224,22 @@ impl Road for Atelier {
         let fails = fails.map(|f| f.as_u64().unwrap() as u32).collect();
         let info = &job.info;
         Ok(Painter { width: info.width, height: info.height, seed: info.seed, fails })
+    }
+
+    fn parity(
+        &self,
+        wish: &ParityWish<'_>,
+        tell: &mut dyn FnMut(&str, &Difference),
+    ) -> Result<String, LoadError> {
+        if wish.adapter.as_deref() == Some("anvil") {
+            return Err(LoadError::NoEngine("there is no anvil".to_owned()));
+        }
+        let [width, height] = wish.size.map(|side| side as usize);
+        let pixels = width * height * wish.frames as usize;
+        // An odd number of frames is one in which a colour is far off.
+        let color_most = if wish.frames % 2 == 1 { 99 } else { 1 };
+        tell("brush", &Difference { pixels, color_most, ..Difference::default() });
+        Ok("easel".to_owned())
     }
 
     fn window(&self, config: Option<&Path>) -> Result<(), String> {
@@ -643,4 +660,18 @@ fn the_doctor_reports_on_everything() {
     ] {
         assert!(ran.out.contains(part), "{part} in\n{}", ran.out);
     }
+}
+
+#[test]
+fn engines_that_differ_end_in_failure_and_in_figures() {
+    let same = desk().run("bench parity --frames 2 --size 8x4");
+    assert_eq!(same.exit, Exit::Done, "{}", same.err);
+    assert!(same.out.contains("easel shows the same") && same.out.contains(" 64 "), "{}", same.out);
+    let other = desk().run("bench parity --frames 3");
+    assert_eq!(other.exit, Exit::SomeFailed, "{}", other.err);
+    assert!(other.out.contains("NOT the same") && other.out.contains(" 99 "), "{}", other.out);
+    let none = desk().run("bench parity --adapter anvil");
+    assert_eq!(none.exit, Exit::NoEngine);
+    assert!(none.err.contains("anvil"), "{}", none.err);
+    assert_eq!(desk().run("bench parity --frames 0").exit, Exit::BadInput);
 }

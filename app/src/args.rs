@@ -45,6 +45,9 @@ pub enum Command {
     Schema,
     /// Say what this machine can do, with a test frame, and what is missing.
     Doctor(DoctorArgs),
+    /// Measure this machine's engines.
+    #[command(subcommand)]
+    Bench(Bench),
 }
 
 /// What can be changed about a config from the command line.
@@ -181,6 +184,27 @@ pub struct DoctorArgs {
     /// Which of the engine's code paths renders the test frame.
     #[arg(long, value_enum, default_value_t = Simd::Auto)]
     pub simd: Simd,
+}
+
+#[derive(Debug, Subcommand)]
+pub enum Bench {
+    /// Compare what the native engine and a graphics adapter make of the same frames.
+    Parity(ParityArgs),
+}
+
+#[derive(Debug, ClapArgs)]
+pub struct ParityArgs {
+    /// The config; without one frames of peoplesanspeople, and one of every other preset.
+    pub config: Option<PathBuf>,
+    /// How many frames.
+    #[arg(long, value_name = "N", default_value_t = 40, value_parser = clap::value_parser!(u32).range(1..))]
+    pub frames: u32,
+    /// Picture size in pixels.
+    #[arg(long, value_name = "WxH", value_parser = size, default_value = "128x128")]
+    pub size: [u32; 2],
+    /// Part of the name of the graphics adapter.
+    #[arg(long, value_name = "NAME")]
+    pub adapter: Option<String>,
 }
 
 /// Outputs by their names, so that a wrong one is answered with a list and a suggestion.

@@ -21,6 +21,8 @@ mod layout;
 pub mod overlay;
 #[cfg(feature = "gui")]
 mod panels;
+#[cfg(feature = "gpu")]
+mod parity;
 mod player;
 mod process;
 mod report;
@@ -67,6 +69,7 @@ pub fn run<R: Road>(
         Some(args::Command::Validate(args)) => commands::validate::run(road, &args, console),
         Some(args::Command::Schema) => commands::schema::run(road, console),
         Some(args::Command::Doctor(args)) => commands::doctor::run(road, &args, console),
+        Some(args::Command::Bench(bench)) => commands::bench::run(road, &bench, console),
     };
     ended.unwrap_or_else(|failure| {
         console.note(&format!("error: {failure}"));

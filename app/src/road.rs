@@ -10,6 +10,7 @@ use std::path::Path;
 use figurant_core::document::cast::Member;
 use figurant_core::export::DatasetInfo;
 use figurant_core::job::FrameMaker;
+use figurant_core::job::parity::Difference;
 use figurant_core::plan::Outputs;
 
 /// Which of an engine's code paths runs. They give the same bytes.
@@ -67,6 +68,19 @@ pub struct Wishes {
     pub engine: EngineWish,
     /// Which code path of the engine runs.
     pub simd: Simd,
+}
+
+/// What the engines are to be compared over.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ParityWish<'a> {
+    /// The config; the seed's preset, and a frame of every other, if absent.
+    pub config: Option<&'a Path>,
+    /// How many of its frames.
+    pub frames: u32,
+    /// Width and height, pixels.
+    pub size: [u32; 2],
+    /// Part of the name of the graphics adapter; the fastest hardware, or else any, if absent.
+    pub adapter: Option<String>,
 }
 
 /// A config that is ready to be rendered.
@@ -170,6 +184,17 @@ pub trait Road: Sync {
         job: &Job<Self::Document>,
         threads: NonZeroUsize,
     ) -> Result<Self::Maker, <Self::Maker as FrameMaker>::Error>;
+
+    /// Renders frames by the native engine and by a graphics adapter, and tells of each config how
+    /// far they are apart; the adapter's name.
+    ///
+    /// # Errors
+    /// When there is no such adapter, or a config or a frame of it fails.
+    fn parity(
+        &self,
+        wish: &ParityWish<'_>,
+        tell: &mut dyn FnMut(&str, &Difference),
+    ) -> Result<String, LoadError>;
 
     /// Shows a config, or one that ships with the program, in a window until that is closed. What is
     /// wrong with the config is said there.

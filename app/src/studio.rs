@@ -15,13 +15,16 @@ use figurant_core::engine::cpu::{CpuEngine, CpuOptions, SimdChoice};
 #[cfg(feature = "gpu")]
 use figurant_core::engine::gpu::{self, GpuEngine, GpuOptions, ShaderFolder};
 use figurant_core::export::{AssetLicence, DatasetInfo, PictureFormat};
+use figurant_core::job::parity::Difference;
 use figurant_core::job::{FrameError, Studio, catalogue};
 use figurant_core::library::textures::TextureGroup;
 use figurant_core::library::{Library, NO_LICENCE};
 use figurant_core::plan::Outputs;
 use figurant_core::sampling::Sampler;
 
-use crate::road::{Adapter, EngineKind, EngineWish, Import, Job, LoadError, Road, Simd, Wishes};
+use crate::road::{
+    Adapter, EngineKind, EngineWish, Import, Job, LoadError, ParityWish, Road, Simd, Wishes,
+};
 
 /// The road that the program itself walks.
 #[derive(Clone, Copy, Debug, Default)]
@@ -171,6 +174,21 @@ impl Road for Native {
         let Loaded { document, library, cast, .. } = &job.document;
         let (document, library) = (Arc::clone(document), Arc::clone(library));
         Studio::new(document, library, Arc::clone(cast), engine(job)?, threads)
+    }
+
+    fn parity(
+        &self,
+        wish: &ParityWish<'_>,
+        tell: &mut dyn FnMut(&str, &Difference),
+    ) -> Result<String, LoadError> {
+        #[cfg(feature = "gpu")]
+        return crate::parity::parity(wish, tell);
+        #[cfg(not(feature = "gpu"))]
+        {
+            let _ = (wish, tell);
+            let text = "this program was built without the graphics engine: nothing to compare";
+            Err(LoadError::NoEngine(text.to_owned()))
+        }
     }
 
     fn window(&self, config: Option<&Path>) -> Result<(), String> {

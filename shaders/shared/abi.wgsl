@@ -120,9 +120,10 @@ struct TriangleBatch {
 // A placed vertex, view space.
 struct Vertex {
     position: vec3<f32>,
-    u: f32,
-    normal: vec3<f32>,
-    v: f32,
+    // Of the unit shading normal; see normal.wgsl.
+    normal: u32,
+    uv: vec2<f32>,
+    pad: vec2<u32>,
 }
 
 // A projected vertex; x is OUTSIDE where it cannot be projected.
@@ -197,25 +198,25 @@ struct SunView {
 
 // A draw's material.
 struct Surface {
-    base_color: vec3<f32>,
-    roughness: f32,
     uv_repeat: vec2<f32>,
     detail_strength: f32,
+    normal_strength: f32,
+    // Halves: red and green, blue and roughness.
+    base: vec2<u32>,
+    // Halves: metallic, and how far light goes round the terminator.
+    metallic_wrap: u32,
     // Sixths of a turn, negative for none.
     hue_turn: f32,
-    metallic: f32,
-    normal_strength: f32,
-    wrap: f32,
-    flags: u32,
-    layers: array<vec4<f32>, 4>,
     // Albedo, detail, normal and mask: first texel of each in the pool.
     map_first: vec4<u32>,
-    // log2 of the side, and what shared/texture.wgsl says.
-    map_info: vec4<u32>,
-    object: u32,
-    pad0: u32,
+    // A byte for each: log2 of the side, and what texture.wgsl says.
+    map_info: u32,
+    // Flags in the low half, the object in the high half.
+    flags: u32,
     // First of the object's own spheres, and the one after the last.
     own_blockers: vec2<u32>,
+    // Halves: red and green, blue and roughness.
+    layers: array<vec2<u32>, 4>,
 }
 
 // A sphere in the way of surrounding light, view space.

@@ -37,9 +37,9 @@ fn take_cutout(slot: u32) {
     let of_c = cross(a.position, to_b).xy;
     let normal = cross(to_b, to_c);
     corner_ray = a.position.xy / -a.position.z;
-    corner_uv = vec2<f32>(a.u, a.v);
-    u_change = (b.u - a.u) * of_b + (c.u - a.u) * of_c;
-    v_change = (b.v - a.v) * of_b + (c.v - a.v) * of_c;
+    corner_uv = a.uv;
+    u_change = (b.uv.x - a.uv.x) * of_b + (c.uv.x - a.uv.x) * of_c;
+    v_change = (b.uv.y - a.uv.y) * of_b + (c.uv.y - a.uv.y) * of_c;
     weight_change = normal.xy;
     corner_weight = dot(normal, vec3<f32>(corner_ray, -1.0));
 }

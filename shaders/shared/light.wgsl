@@ -151,8 +151,13 @@ fn reflected(
             }
         }
     }
-    // All invocations look at the same lamp at a time, which one load serves.
-    for (var i = 0u; i < frame.light_count; i++) {
+    // Where it is known which lamp comes next, all invocations share one load.
+    for (var i = 0u; i < KNOWN_LAMPS; i++) {
+        if i < frame.light_count {
+            sum += lamp(r, lamps[i]);
+        }
+    }
+    for (var i = KNOWN_LAMPS; i < frame.light_count; i++) {
         sum += lamp(r, lamps[i]);
     }
     return sum;

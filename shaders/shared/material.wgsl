@@ -45,30 +45,37 @@ fn bent(normal: vec3<f32>, by: vec3<f32>, point: SurfacePoint) -> vec3<f32> {
     return normalized(tangent * by.x - bitangent * by.y + normal * max(by.z, 0.05));
 }
 
-// The maps of a draw, a bit each.
-fn maps_of(draw: u32) -> u32 {
-    let present = (surfaces[draw].map_info & vec4<u32>(MAP_PRESENT)) != vec4<u32>(0u);
-    let bits = select(vec4<u32>(0u), vec4<u32>(1u, 2u, 4u, 8u), present);
-    return bits.x | bits.y | bits.z | bits.w;
+// Red, green, blue and roughness, or the like, of two pairs of halves.
+fn four_halves(pairs: vec2<u32>) -> vec4<f32> {
+    return vec4<f32>(unpack2x16float(pairs.x), unpack2x16float(pairs.y));
+}
+
+// The maps that there are, a bit each.
+fn maps_of(info: u32) -> u32 {
+    let present = info & (MAP_PRESENT * 0x01010101u);
+    return ((present >> 6u) | (present >> 13u) | (present >> 20u) | (present >> 27u)) & 15u;
 }
 
 // Looks up one map after the other, so that invocations without maps do not pay for those of
 // their neighbours more than once.
 fn look_at(draw: u32, point: SurfacePoint) -> Look {
-    var look = Look(surfaces[draw].base_color, surfaces[draw].roughness, point.normal);
+    let base = four_halves(surfaces[draw].base);
+    var look = Look(base.xyz, base.w, point.normal);
     var detail = 1.0;
     var tilt = vec3<f32>(0.0, 0.0, 1.0);
     var mask = vec4<f32>(0.0);
-    let maps = maps_of(draw);
+    let infos = surfaces[draw].map_info;
+    let own_repeat = surfaces[draw].uv_repeat;
+    let maps = maps_of(infos);
     var rest = maps;
     while rest != 0u {
         let map = firstTrailingBit(rest);
         rest &= rest - 1u;
         // The mask is not repeated.
-        let repeat = select(surfaces[draw].uv_repeat, vec2<f32>(1.0), map == MASK_MAP);
+        let repeat = select(own_repeat, vec2<f32>(1.0), map == MASK_MAP);
         let footprint = footprint_of(point.d_dx * repeat, point.d_dy * repeat);
-        let first = surfaces[draw].map_first[map];
-        let texel = look_up(first, surfaces[draw].map_info[map], point.uv * repeat, footprint);
+        let info = (infos >> (8u * map)) & 255u;
+        let texel = look_up(surfaces[draw].map_first[map], info, point.uv * repeat, footprint);
         if map == ALBEDO_MAP {
             look.albedo *= texel.xyz;
         } else if map == DETAIL_MAP {
@@ -81,8 +88,9 @@ fn look_at(draw: u32, point: SurfacePoint) -> Look {
             mask = texel;
         }
     }
-    if surfaces[draw].hue_turn >= 0.0 {
-        look.albedo = rotate_hue(look.albedo, surfaces[draw].hue_turn);
+    let turn = surfaces[draw].hue_turn;
+    if turn >= 0.0 {
+        look.albedo = rotate_hue(look.albedo, turn);
     }
     look.albedo *= detail;
     if (maps & (1u << NORMAL_MAP)) != 0u {
@@ -90,7 +98,7 @@ fn look_at(draw: u32, point: SurfacePoint) -> Look {
     }
     let layers = select(0u, 4u, (maps & (1u << MASK_MAP)) != 0u);
     for (var k = 0u; k < layers; k++) {
-        let layer = surfaces[draw].layers[k];
+        let layer = four_halves(surfaces[draw].layers[k]);
         look.albedo += (layer.xyz - look.albedo) * mask[k];
         look.roughness += (layer.w - look.roughness) * mask[k];
     }

@@ -47,8 +47,8 @@ fn surface_point(corners: vec3<u32>, at: vec2<f32>, flags: u32) -> SurfacePoint 
     let raw = vec2<f32>(dot(to_ray, across), dot(ray, cross(to_ray, edge1))) * inverse;
     let w = clamp_to_triangle(raw);
 
-    let uv1 = vec2<f32>(b.u - a.u, b.v - a.v);
-    let uv2 = vec2<f32>(c.u - a.u, c.v - a.v);
+    let uv1 = b.uv - a.uv;
+    let uv2 = c.uv - a.uv;
     // Numerators and determinant of the weights are linear in the ray.
     let base = cross(edge2, edge1);
     let change1 = over_pixel(through, (cross(a.position, edge2).xy - raw.x * base.xy) * inverse);
@@ -58,9 +58,11 @@ fn surface_point(corners: vec3<u32>, at: vec2<f32>, flags: u32) -> SurfacePoint 
 
     var out: SurfacePoint;
     out.position = a.position + edge1 * w.x + edge2 * w.y;
-    out.normal =
-        normalized(a.normal + (b.normal - a.normal) * w.x + (c.normal - a.normal) * w.y);
-    out.uv = vec2<f32>(a.u, a.v) + uv1 * w.x + uv2 * w.y;
+    let normal = normalized(direction(a.normal));
+    let normal1 = normalized(direction(b.normal)) - normal;
+    let normal2 = normalized(direction(c.normal)) - normal;
+    out.normal = normalized(normal + normal1 * w.x + normal2 * w.y);
+    out.uv = a.uv + uv1 * w.x + uv2 * w.y;
     out.d_dx = change1.x * uv1 + change2.x * uv2;
     out.d_dy = change1.y * uv1 + change2.y * uv2;
     out.tangent = (edge1 * uv2.y - edge2 * uv1.y) * sign;

@@ -13,12 +13,14 @@ const MASK_MAP: u32 = 3u;
 
 // A texel of plain numbers, 0..1.
 fn decode_plain(texel: u32) -> vec4<f32> {
-    return unpack4x8unorm(texel);
+    let bytes = (vec4<u32>(texel) >> vec4<u32>(0u, 8u, 16u, 24u)) & vec4<u32>(255u);
+    return vec4<f32>(bytes) * (1.0 / 255.0);
 }
 
 // A texel of colour to linear light: its three numbers are square roots.
 fn decode_color(texel: u32) -> vec4<f32> {
-    let roots = vec3<f32>((vec3<u32>(texel) >> vec3<u32>(0u, 10u, 20u)) & vec3<u32>(1023u)) / 1023.0;
+    let units = (vec3<u32>(texel) >> vec3<u32>(0u, 10u, 20u)) & vec3<u32>(1023u);
+    let roots = vec3<f32>(units) * (1.0 / 1023.0);
     return vec4<f32>(roots * roots, 1.0);
 }
 

@@ -11,11 +11,18 @@ use super::common::options;
 
 /// Runs the program as the command line would: how it ended, and its messages.
 fn figurant(args: &[&str]) -> (Exit, String) {
+    let (exit, _, messages) = figurant_says(args);
+    (exit, messages)
+}
+
+/// With what it wrote to standard output, before the messages.
+fn figurant_says(args: &[&str]) -> (Exit, String, String) {
     let (mut out, mut err) = (Vec::new(), Vec::new());
     let words = std::iter::once("figurant").chain(args.iter().copied());
     let console = &mut Console::new(&mut out, &mut err, false);
     let exit = figurant::run(&Native, words.map(Into::into), console, &Stop::new());
-    (exit, String::from_utf8(err).unwrap())
+    let [out, err] = [out, err].map(|bytes| String::from_utf8(bytes).unwrap());
+    (exit, out, err)
 }
 
 fn export(out: &Path, more: &[&str]) -> (Exit, String) {
@@ -67,4 +74,18 @@ fn an_engine_that_cannot_be_had_is_refused_before_anything_is_written() {
     assert_eq!(exit, Exit::NoEngine, "{messages}");
     assert!(messages.contains("Voodoo 2") && messages.contains(&adapter), "{messages}");
     assert!(!out.exists());
+}
+
+#[test]
+fn the_program_compares_its_engines() {
+    let Some(adapter) = options().and_then(|o| o.adapter) else { return };
+    let config = concat!(env!("CARGO_MANIFEST_DIR"), "/../presets/everyday.json");
+    let args = ["bench", "parity", config, "--frames", "2", "--size", "96x64"];
+    let (exit, out, messages) = figurant_says(&[&args[..], &["--adapter", &adapter]].concat());
+    assert_eq!(exit, Exit::Done, "{out}{messages}");
+    assert!(out.contains(&format!("{adapter} shows the same")), "{out}");
+    let row = out.lines().find(|line| line.contains("everyday.json")).unwrap();
+    assert!(row.contains(" 12288 "), "{row}");
+    let (exit, _, messages) = figurant_says(&["bench", "parity", "--adapter", "Voodoo 2"]);
+    assert_eq!(exit, Exit::NoEngine, "{messages}");
 }

@@ -7,6 +7,7 @@ use crate::args::Changes;
 use crate::road::{LoadError, Wishes};
 use crate::{Exit, Failure};
 
+pub mod bench;
 pub mod doctor;
 pub mod export;
 pub mod frame;

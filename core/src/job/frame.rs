@@ -129,6 +129,12 @@ impl Studio {
         Ok(())
     }
 
+    /// What a frame shows.
+    #[must_use]
+    pub fn scene(&self, frame: u32) -> Scene {
+        self.sampler.scene(frame)
+    }
+
     /// The passes that a scene takes.
     #[must_use]
     pub fn plan(&self, scene: &Scene) -> PassPlan {

@@ -162,6 +162,12 @@ impl Normal {
         x as u16 as u32 | (y as u16 as u32) << 16
     }
 
+    /// From the bits.
+    #[must_use]
+    pub const fn of_bits(bits: u32) -> Self {
+        Self([bits as i16, (bits >> 16) as i16])
+    }
+
     /// A vector of this direction, 0.57 to 1 long: what turns it scales it as well.
     #[must_use]
     #[inline(always)]

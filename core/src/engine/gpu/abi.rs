@@ -97,9 +97,9 @@ pub struct TriangleBatch {
 #[repr(C)]
 pub struct Vertex {
     pub position: [f32; 3],
-    pub u: f32,
-    pub normal: [f32; 3],
-    pub v: f32,
+    pub normal: u32,
+    pub uv: [f32; 2],
+    pub pad: [u32; 2],
 }
 
 /// A projected vertex.
@@ -176,21 +176,17 @@ pub struct SunView {
 #[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
 #[repr(C)]
 pub struct Surface {
-    pub base_color: [f32; 3],
-    pub roughness: f32,
     pub uv_repeat: [f32; 2],
     pub detail_strength: f32,
-    pub hue_turn: f32,
-    pub metallic: f32,
     pub normal_strength: f32,
-    pub wrap: f32,
-    pub flags: u32,
-    pub layers: [[f32; 4]; 4],
+    pub base: [u32; 2],
+    pub metallic_wrap: u32,
+    pub hue_turn: f32,
     pub map_first: [u32; 4],
-    pub map_info: [u32; 4],
-    pub object: u32,
-    pub pad0: u32,
+    pub map_info: u32,
+    pub flags: u32,
     pub own_blockers: [u32; 2],
+    pub layers: [[u32; 2]; 4],
 }
 
 /// A sphere in the way of surrounding light.

@@ -26,6 +26,10 @@ pub struct Device {
     pub limits: wgpu::Limits,
     /// Whether stages can be timed.
     pub timed: bool,
+    /// Whether somebody else waits for it while it renders: software that a window is drawn by as
+    /// well. What hardware does in a millisecond takes it a tenth of a second, in which a window would
+    /// stand still; so it is given a frame in small parts, each after the one before is done.
+    pub takes_turns: bool,
     faults: Arc<Mutex<Faults>>,
     /// Where shaders are read anew from.
     folder: Option<ShaderFolder>,
@@ -48,12 +52,13 @@ impl Device {
         }
         let (device, queue) = adapter::block_on(adapter.request_device(&wanted))
             .map_err(|e| GpuError::Refused { adapter: name.clone(), reason: e.to_string() })?;
-        Ok(Self::watched(name, device, queue, options.shaders.clone()))
+        Ok(Self::watched(name, device, queue, options.shaders.clone(), false))
     }
 
     /// A device that somebody else opened.
     pub fn given(context: GpuContext) -> Self {
-        Self::watched(context.name, context.device, context.queue, context.shaders)
+        let GpuContext { name, hardware, device, queue, shaders } = context;
+        Self::watched(name, device, queue, shaders, !hardware)
     }
 
     /// An open device, whose faults are written down from now on.
@@ -62,6 +67,7 @@ impl Device {
         device: wgpu::Device,
         queue: wgpu::Queue,
         folder: Option<ShaderFolder>,
+        takes_turns: bool,
     ) -> Self {
         let faults = Arc::new(Mutex::new(Faults::default()));
         watch(&device, &faults);
@@ -70,7 +76,19 @@ impl Device {
         let sources = folder.as_ref().map(ShaderFolder::sources).unwrap_or_default();
         let seen = Arc::clone(&sources);
         let pipelines = BTreeMap::new();
-        Self { name, device, queue, limits, timed, faults, folder, sources, seen, pipelines }
+        Self {
+            name,
+            device,
+            queue,
+            limits,
+            timed,
+            takes_turns,
+            faults,
+            folder,
+            sources,
+            seen,
+            pipelines,
+        }
     }
 
     /// Whether the device went away.

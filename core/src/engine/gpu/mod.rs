@@ -73,6 +73,9 @@ use crate::plan::{Delivery, Frame, ObjectSamples, Pass, PassPlan, StageTimes};
 /// the first try, but for the sun's map, of which it is known after the second.
 const TRIES: usize = 4;
 
+/// Rows of pixels that a device which takes turns is given at a time.
+const ROWS_OF_A_TURN: u64 = 128;
+
 /// Renders draw lists on a graphics device. Keeps its buffers from frame to frame.
 pub struct GpuEngine {
     /// How its device is opened; nothing if somebody else opened it.
@@ -438,7 +441,10 @@ impl State {
         let per_row = u64::from(list.view.width) * (8 * u64::from(list.samples)).max(of_ray);
         let staging = u64::from(list.view.width) * 12 + 1;
         let rows = (limit / per_row).min(self.device.limits.max_buffer_size / 2 / staging);
-        let rows = rows.min(8192) as u32 / abi::TILE * abi::TILE;
+        // Behind a lens each band would need its tables anew.
+        let turns = self.device.takes_turns && list.lens.is_none();
+        let most = if turns { ROWS_OF_A_TURN } else { 8192 };
+        let rows = rows.min(most) as u32 / abi::TILE * abi::TILE;
         if rows == 0 {
             let got = per_row * u64::from(abi::TILE);
             return Err(EngineError::TooLarge {

@@ -1,5 +1,7 @@
 //! Pack: a draw list as the records that the shaders read.
 
+use half::f16;
+
 use super::abi::{
     self, Blocker, CUTOUT_SHIFT, DOUBLE_SIDED, Frame, Light, MAP_COLOR, MAP_PRESENT, MIRRORED,
     SMOOTH, Surface, TRIANGLE_BATCH, Target, TriangleBatch, VERTEX_BATCH, VERTEX_WORDS,
@@ -105,7 +107,7 @@ impl Packed {
             let mut surface =
                 surface(&list.materials[draw.material as usize], list, textures, draw.object);
             let flag = |set: bool, flag: u32| if set { flag } else { 0 };
-            surface.flags = flag(draw.double_sided, DOUBLE_SIDED)
+            surface.flags |= flag(draw.double_sided, DOUBLE_SIDED)
                 | flag(is_mirrored(list, draw.object), MIRRORED)
                 | flag(object.smooth, SMOOTH);
             surface
@@ -326,25 +328,35 @@ fn surface(material: &Material, list: &DrawList, textures: &[u32], object: u32) 
         let color = if texture.encoding == Encoding::Color { MAP_COLOR } else { 0 };
         texture.log2_size | color | MAP_PRESENT
     };
+    let infos = maps.map(|m| m.map_or(0, |i| info(&list.textures[i as usize])));
+    let [r, g, b] = material.base_color;
     Surface {
-        base_color: material.base_color,
-        roughness: material.roughness.clamp(0.04, 1.0),
         uv_repeat: material.uv_repeat,
         detail_strength: material.detail_strength,
-        hue_turn: if turn == 0.0 { -1.0 } else { turn - 6.0 * (turn / 6.0).floor() },
-        metallic: material.metallic.clamp(0.0, 1.0),
         normal_strength: material.normal_strength,
-        wrap: material.wrap.clamp(0.0, 0.5),
-        layers: material.layers,
+        base: pairs([r, g, b, material.roughness.clamp(0.04, 1.0)]),
+        metallic_wrap: pair([material.metallic.clamp(0.0, 1.0), material.wrap.clamp(0.0, 0.5)]),
+        hue_turn: if turn == 0.0 { -1.0 } else { turn - 6.0 * (turn / 6.0).floor() },
         map_first: maps.map(|m| m.map_or(0, |i| textures[i as usize])),
-        map_info: maps.map(|m| m.map_or(0, |i| info(&list.textures[i as usize]))),
-        object,
+        map_info: u32::from_le_bytes(infos.map(|info| info as u8)),
+        flags: object << 16,
         own_blockers: {
             let own = &list.objects[object as usize].blockers;
             [own.start, own.end]
         },
-        ..Surface::default()
+        layers: material.layers.map(pairs),
     }
+}
+
+/// Two numbers as halves, the first one lower.
+fn pair(v: [f32; 2]) -> u32 {
+    let [low, high] = v.map(|v| u32::from(f16::from_f32(v).to_bits()));
+    low | high << 16
+}
+
+/// Four numbers as halves.
+fn pairs([a, b, c, d]: [f32; 4]) -> [u32; 2] {
+    [pair([a, b]), pair([c, d])]
 }
 
 /// Whether an object's transform turns its triangles inside out.

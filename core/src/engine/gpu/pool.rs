@@ -114,7 +114,7 @@ impl<T: ?Sized> Pool<T> {
             {
                 return Err(EngineError::TooLarge {
                     what: self.what,
-                    got: words * 4,
+                    got: (self.taken.values().sum::<u64>() + words) * 4,
                     limit: limit * 4,
                 });
             }

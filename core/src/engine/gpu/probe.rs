@@ -7,6 +7,7 @@ use super::abi::Vertex;
 use super::stage::Resource;
 use super::{GpuEngine, State};
 use crate::engine::EngineError;
+use crate::library::mesh::Normal;
 
 /// A vertex in view space.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -34,7 +35,10 @@ impl GpuEngine {
         let size = size_of::<Vertex>() as u64;
         let bytes = u64::from(low) * size..u64::from(high) * size;
         let bytes = state.read(Resource::Vertices, bytes)?;
-        let placed = |v: Vertex| PlacedVertex { position: v.position, normal: v.normal };
+        let placed = |v: Vertex| PlacedVertex {
+            position: v.position,
+            normal: Normal::of_bits(v.normal).unit(),
+        };
         Ok(bytemuck::pod_collect_to_vec::<u8, Vertex>(&bytes).into_iter().map(placed).collect())
     }
 }

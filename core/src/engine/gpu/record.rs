@@ -172,6 +172,20 @@ impl Recorder<'_> {
         pass.set_pipeline(self.device.pipeline(stage, self.variant));
         let [x, y, z] = groups;
         pass.dispatch_workgroups(x, y, z);
+        drop(pass);
+        if self.device.takes_turns {
+            self.rest();
+        }
+    }
+
+    /// Sends off what was recorded and waits for it, so that others' work comes next. What fails is
+    /// heard of when the band is waited for.
+    fn rest(&mut self) {
+        let device = &self.device.device;
+        let next = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        let part = std::mem::replace(self.encoder, next);
+        let submission_index = Some(self.device.queue.submit([part.finish()]));
+        drop(device.poll(wgpu::PollType::Wait { submission_index, timeout: None }));
     }
 }
 

@@ -13,9 +13,9 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::SystemTime;
 
 use wgpu::naga::front::wgsl;
-use wgpu::naga::valid::{Capabilities, ValidationFlags, Validator};
+use wgpu::naga::valid::{ValidationFlags, Validator};
 
-use super::stage::{File, Stage};
+use super::stage::{CAPABILITIES, File, Stage};
 use super::variant::Variant;
 
 /// What is wrong with a shader of a folder.
@@ -162,13 +162,12 @@ impl ShaderFolder {
                 std::iter::once(e.message()).chain(e.notes()).collect::<Vec<_>>().join("; "),
             )
         })?;
-        Validator::new(ValidationFlags::all(), Capabilities::empty())
-            .validate(&module)
-            .map(drop)
-            .map_err(|e| {
+        Validator::new(ValidationFlags::all(), CAPABILITIES).validate(&module).map(drop).map_err(
+            |e| {
                 let line = e.location(&source).map(|l| l.line_number);
                 problem(line, chain(e.as_inner()))
-            })
+            },
+        )
     }
 
     /// Tells that a device does not take a shader which is valid in itself.

@@ -3,12 +3,20 @@
 //! A shader is plain text: the constants of its variant, the shared files that it needs, and its
 //! own file. Texts are embedded; [`super::reload`] can put others in their place.
 
+use wgpu::naga::valid::Capabilities;
+
+use super::reload::Sources;
+use super::variant::Variant;
+use Access::{Read, Uniform, Write};
+use Resource as R;
+
 /// A file of the folder of shaders.
 macro_rules! file {
     ($name:literal) => {
         ($name, include_str!(concat!("../../../../shaders/", $name)))
     };
 }
+
 /// A buffer that stages read or write.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Resource {
@@ -55,6 +63,10 @@ pub enum Resource {
     Rays,
 }
 
+/// What shaders ask of a device beyond WGSL's least: numbers of half width in memory, which every
+/// device of WebGPU has.
+pub const CAPABILITIES: Capabilities = Capabilities::SHADER_FLOAT16_IN_FLOAT32;
+
 /// How a stage uses a buffer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Access {
@@ -91,11 +103,6 @@ pub enum Stage {
     LensRaster,
     LensShade,
 }
-
-use super::reload::Sources;
-use super::variant::Variant;
-use Access::{Read, Uniform, Write};
-use Resource as R;
 
 impl Stage {
     /// All stages in the order in which a frame runs them.
@@ -176,7 +183,7 @@ impl Stage {
         match self {
             Self::Skin => &[
                 (R::Frame, Uniform),
-                (R::Plane, Read),
+                (R::Plane, Uniform),
                 (R::VertexBatches, Read),
                 (R::Meshes, Read),
                 (R::Palette, Read),
@@ -186,7 +193,7 @@ impl Stage {
             ],
             Self::Setup => &[
                 (R::Frame, Uniform),
-                (R::Plane, Read),
+                (R::Plane, Uniform),
                 (R::Batches, Read),
                 (R::Meshes, Read),
                 (R::Screen, Read),
@@ -196,7 +203,7 @@ impl Stage {
             ],
             Self::SunSetup => &[
                 (R::Frame, Uniform),
-                (R::SunTarget, Read),
+                (R::SunTarget, Uniform),
                 (R::SunBatches, Read),
                 (R::Meshes, Read),
                 (R::Screen, Read),
@@ -207,7 +214,7 @@ impl Stage {
             ],
             Self::Clip => &[
                 (R::Frame, Uniform),
-                (R::Plane, Read),
+                (R::Plane, Uniform),
                 (R::Batches, Read),
                 (R::Meshes, Read),
                 (R::Vertices, Read),
@@ -218,7 +225,7 @@ impl Stage {
             ],
             Self::SunClip => &[
                 (R::Frame, Uniform),
-                (R::SunTarget, Read),
+                (R::SunTarget, Uniform),
                 (R::SunBatches, Read),
                 (R::Meshes, Read),
                 (R::Vertices, Read),
@@ -229,7 +236,7 @@ impl Stage {
             ],
             Self::Bound => &[
                 (R::Frame, Uniform),
-                (R::Plane, Read),
+                (R::Plane, Uniform),
                 (R::VertexBatches, Read),
                 (R::Vertices, Read),
                 (R::Screen, Read),
@@ -243,7 +250,7 @@ impl Stage {
             ],
             Self::Project => &[
                 (R::Frame, Uniform),
-                (R::SunTarget, Read),
+                (R::SunTarget, Uniform),
                 (R::VertexBatches, Read),
                 (R::Vertices, Read),
                 (R::Screen, Write),
@@ -251,7 +258,7 @@ impl Stage {
             ],
             Self::Count | Self::Scatter => &[
                 (R::Frame, Uniform),
-                (R::Target, Read),
+                (R::Target, Uniform),
                 (R::Primitives, Write),
                 (R::Counters, Write),
                 (R::Tiles, Write),
@@ -259,19 +266,22 @@ impl Stage {
             ],
             Self::LensCount | Self::LensScatter => &[
                 (R::Frame, Uniform),
-                (R::Target, Read),
+                (R::Target, Uniform),
                 (R::Primitives, Write),
                 (R::Counters, Write),
                 (R::Tiles, Write),
                 (R::Lists, Write),
                 (R::Squares, Read),
             ],
-            Self::Scan => {
-                &[(R::Frame, Uniform), (R::Target, Read), (R::Tiles, Write), (R::Counters, Write)]
-            }
+            Self::Scan => &[
+                (R::Frame, Uniform),
+                (R::Target, Uniform),
+                (R::Tiles, Write),
+                (R::Counters, Write),
+            ],
             Self::Raster => &[
                 (R::Frame, Uniform),
-                (R::Target, Read),
+                (R::Target, Uniform),
                 (R::Primitives, Read),
                 (R::Counters, Read),
                 (R::Tiles, Read),
@@ -281,7 +291,7 @@ impl Stage {
             ],
             Self::LensRaster => &[
                 (R::Frame, Uniform),
-                (R::Target, Read),
+                (R::Target, Uniform),
                 (R::Primitives, Read),
                 (R::Counters, Read),
                 (R::Tiles, Read),
@@ -292,14 +302,14 @@ impl Stage {
             ],
             Self::Shadow => &[
                 (R::Frame, Uniform),
-                (R::SunTarget, Read),
+                (R::SunTarget, Uniform),
                 (R::SunPrimitives, Read),
                 (R::SunCounters, Read),
                 (R::ShadowMap, Write),
             ],
             Self::Resolve => &[
                 (R::Frame, Uniform),
-                (R::Target, Read),
+                (R::Target, Uniform),
                 (R::Primitives, Read),
                 (R::Surfaces, Read),
                 (R::Samples, Read),
@@ -307,7 +317,7 @@ impl Stage {
             ],
             Self::Reduce => &[
                 (R::Frame, Uniform),
-                (R::Target, Read),
+                (R::Target, Uniform),
                 (R::Primitives, Read),
                 (R::Surfaces, Read),
                 (R::Samples, Read),
@@ -384,7 +394,7 @@ impl Stage {
     /// Its files, each after those that it needs.
     pub fn files(self) -> &'static [File] {
         match self {
-            Self::Skin => &[ABI, DOUBLE, PROJECT, file!("skin.wgsl")],
+            Self::Skin => &[ABI, DOUBLE, PROJECT, NORMAL, file!("skin.wgsl")],
             Self::Project => &[ABI, DOUBLE, PROJECT, file!("project.wgsl")],
             Self::Bound => &[ABI, BOUNDS, file!("bound.wgsl")],
             Self::Fit => &[ABI, DOUBLE, BOUNDS, file!("fit.wgsl")],
@@ -407,6 +417,7 @@ impl Stage {
                 ABI,
                 file!("shared/texture.wgsl"),
                 file!("shared/ray.wgsl"),
+                NORMAL,
                 file!("shared/surface.wgsl"),
                 file!("shared/material.wgsl"),
                 file!("shared/sunlight.wgsl"),
@@ -421,6 +432,7 @@ impl Stage {
                 ABI,
                 file!("shared/texture.wgsl"),
                 file!("shared/lens_ray.wgsl"),
+                NORMAL,
                 file!("shared/surface.wgsl"),
                 file!("shared/material.wgsl"),
                 file!("shared/sunlight.wgsl"),
@@ -441,6 +453,7 @@ pub type File = (&'static str, &'static str);
 const ABI: File = file!("shared/abi.wgsl");
 const DOUBLE: File = file!("shared/double.wgsl");
 const WIDE: File = file!("shared/wide.wgsl");
+const NORMAL: File = file!("shared/normal.wgsl");
 const PROJECT: File = file!("shared/project.wgsl");
 const BOUNDS: File = file!("shared/bounds.wgsl");
 const TRIANGLE: File = file!("shared/triangle.wgsl");

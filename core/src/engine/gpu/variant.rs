@@ -12,6 +12,8 @@ use crate::engine::pattern;
 const SAMPLES: [u32; 3] = [1, 4, 16];
 /// Tone curves as [`Frame::tone_curve`] numbers them.
 const TONE_CURVES: u32 = 3;
+/// Most lamps that a shader counts on; what a frame has more of is looped over.
+const KNOWN_LAMPS: u32 = 8;
 
 /// A form of the shaders.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -39,6 +41,8 @@ pub struct Light {
     noise: bool,
     /// Which tone curve.
     tone_curve: u32,
+    /// Lamps that the shader counts on, one after the other without a loop: a multiple of four.
+    known_lamps: u32,
 }
 
 impl Light {
@@ -51,6 +55,7 @@ impl Light {
             shadow: frame.has_shadow != 0,
             noise: frame.shot_noise > 0.0 || frame.read_variance > 0.0,
             tone_curve: frame.tone_curve,
+            known_lamps: frame.light_count.next_multiple_of(4).min(KNOWN_LAMPS),
         }
     }
 }
@@ -73,7 +78,8 @@ impl Variant {
         let lights = (0..2 * TONE_CURVES).map(|k| {
             let all = k % 2 == 1;
             let [environment, blockers, sun, shadow, noise] = [all; 5];
-            Light { environment, blockers, sun, shadow, noise, tone_curve: k / 2 }
+            let known_lamps = if all { KNOWN_LAMPS } else { 0 };
+            Light { environment, blockers, sun, shadow, noise, tone_curve: k / 2, known_lamps }
         });
         let every = lights.flat_map(|light| {
             SAMPLES.map(|n| [(n, light, false), (n, light, true)]).into_iter().flatten()
@@ -94,7 +100,7 @@ impl Variant {
         // With one sample a pixel, positions are whole pixels from its middle, else sixteenths.
         let (grid_log2, corner) = if samples == 1 { (10, 8) } else { (6, 0) };
         let pixels = pixels_of_lane(samples);
-        let Light { environment, blockers, sun, shadow, noise, tone_curve } = light;
+        let Light { environment, blockers, sun, shadow, noise, tone_curve, known_lamps } = light;
         format!(
             "const SAMPLES: u32 = {samples}u;\n\
              const POSITIONS = array<vec2<i32>, {samples}>({});\n\
@@ -108,7 +114,8 @@ impl Variant {
              const HAS_SHADOW: bool = {shadow};\n\
              const HAS_NOISE: bool = {noise};\n\
              const HAS_CUTOUTS: bool = {cutouts};\n\
-             const TONE_CURVE: u32 = {tone_curve}u;\n",
+             const TONE_CURVE: u32 = {tone_curve}u;\n\
+             const KNOWN_LAMPS: u32 = {known_lamps}u;\n",
             positions.join(", "),
             1 << (10 - grid_log2),
         )

@@ -4,7 +4,7 @@ use std::mem::offset_of;
 
 use wgpu::naga::front::wgsl;
 use wgpu::naga::proc::Layouter;
-use wgpu::naga::valid::{Capabilities, ValidationFlags, Validator};
+use wgpu::naga::valid::{ValidationFlags, Validator};
 use wgpu::naga::{AddressSpace, Module, StorageAccess, TypeInner};
 
 use super::*;
@@ -26,7 +26,7 @@ fn modules() -> impl Iterator<Item = (String, Stage, Module)> {
 #[test]
 fn every_shader_is_valid() {
     for (name, stage, module) in modules() {
-        let mut validator = Validator::new(ValidationFlags::all(), Capabilities::empty());
+        let mut validator = Validator::new(ValidationFlags::all(), CAPABILITIES);
         validator.validate(&module).unwrap_or_else(|e| {
             panic!("{name}: {e:?}");
         });
@@ -138,7 +138,7 @@ fn shared_structs_are_laid_out_alike() {
             double_sided,
             cutout,
         }),
-        layout!(Vertex { position, u, normal, v }),
+        layout!(Vertex { position, normal, uv, pad }),
         layout!(ScreenVertex { x, y, depth, pad }),
         layout!(Primitive { x, inverse_area, y, order, depth, flags, corners, draw }),
         layout!(Counters { primitives, large, entries, bad_object, crossing, pad0, pad1, pad2 }),
@@ -146,21 +146,17 @@ fn shared_structs_are_laid_out_alike() {
         layout!(Bounds { low, high, nearest, reaches }),
         layout!(SunView { rows, size, texel_m, depth_per_m, present, pad0, pad1, pad2 }),
         layout!(Surface {
-            base_color,
-            roughness,
             uv_repeat,
             detail_strength,
-            hue_turn,
-            metallic,
             normal_strength,
-            wrap,
-            flags,
-            layers,
+            base,
+            metallic_wrap,
+            hue_turn,
             map_first,
             map_info,
-            object,
-            pad0,
+            flags,
             own_blockers,
+            layers,
         }),
         layout!(Blocker { center, radius_m }),
         layout!(Light { position, per_range_m2, color_cd, per_radius_m }),
