@@ -1,5 +1,6 @@
 //! The window: `logic` takes what the preview has to say, `ui` shows the panels.
 
+use std::num::NonZeroUsize;
 use std::path::PathBuf;
 
 use eframe::egui::{self, Context, Ui};
@@ -43,9 +44,10 @@ impl Shell {
             .map(|context| GpuContext { shaders: shader_folder(), ..context });
         let graphics =
             context.as_ref().map(|c| Graphics { adapter: c.name.clone(), hardware: c.hardware });
+        let threads = threads_of_preview(context.as_ref());
         let waker = ctx.clone();
         let mut preview =
-            Preview::start(context, processors(), Box::new(move || waker.request_repaint()))?;
+            Preview::start(context, threads, Box::new(move || waker.request_repaint()))?;
         preview.open(path.clone());
         Ok(Self {
             session: Session::new(path, graphics),
@@ -91,6 +93,16 @@ impl Shell {
                 self.session.queue.push(command);
             }
         }
+    }
+}
+
+/// How many threads pictures are made on. Where the window is drawn by software it needs a processor
+/// itself, so that it goes on moving.
+fn threads_of_preview(context: Option<&GpuContext>) -> NonZeroUsize {
+    let all = processors();
+    match context {
+        Some(context) if !context.hardware => NonZeroUsize::new(all.get() - 1).unwrap_or(all),
+        _ => all,
     }
 }
 
