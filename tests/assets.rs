@@ -93,6 +93,15 @@ fn skipped_pictures_are_replaced_alike_by_any_workers_and_listed() {
         let bad = ["a.png", "c.jpg", "d.png", "e.png"].map(|f| format!("folder/photos/{f}"));
         assert_eq!(ids, bad);
         assert!(skipped.iter().all(|s| s["reason"].as_str().unwrap().len() > 10));
+        // Each image says which of them it lacks, and all of them together are the report's.
+        let index = fs::read(out.join("coco/annotations.json")).unwrap();
+        let index: Value = serde_json::from_slice(&index).unwrap();
+        let images = index["images"].as_array().unwrap().iter();
+        let lacks = images.filter_map(|i| i["figurant"]["skipped_assets"].as_array()).flatten();
+        let mut lacks: Vec<_> = lacks.cloned().collect();
+        lacks.sort_by_key(Value::to_string);
+        lacks.dedup();
+        assert_eq!(&lacks, skipped);
         out
     });
     for frame in 0..8 {

@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 use std::sync::LazyLock;
 
-use figurant_core::document::{Document, Problem, file};
+use figurant_core::document::{Distribution, Document, Param, Problem, file};
 use figurant_core::job;
 use figurant_core::library::Library;
 use figurant_core::sampling::{Catalogue, Sampler, check_assets};
@@ -161,4 +161,25 @@ fn whoever_sits_has_a_seat_and_nobody_else() {
     let mut off = document;
     off.people.seats.enabled = false;
     assert!(people(&off, 50).iter().all(|p| p.seat.is_none()));
+}
+
+/// Seats are surfaces like others: each has numbers of its own.
+#[test]
+fn seats_are_of_the_materials_that_the_document_names() {
+    let mut document = posed(r#"{"clip": "pose/sitting_chair"}"#);
+    document.materials.roughness = Param::Random(Distribution::Uniform([0.2, 0.8]));
+    document.materials.metallic = Param::from(0.25);
+    let roughness = |document: &Document| -> Vec<f64> {
+        let seats = people(document, 40).into_iter().filter_map(|p| p.seat);
+        let materials = seats.map(|s| s.material).inspect(|m| assert_eq!(m.metallic, 0.25));
+        materials.map(|m| m.roughness).collect()
+    };
+    let drawn = roughness(&document);
+    let (low, high) = drawn.iter().fold((1.0f64, 0.0f64), |(a, b), v| (a.min(*v), b.max(*v)));
+    assert!(
+        drawn.len() > 50 && (0.2..0.3).contains(&low) && (0.7..0.8).contains(&high),
+        "{drawn:?}"
+    );
+    document.materials.enabled = false;
+    assert!(roughness(&document).iter().all(|v| (v - 0.5).abs() < 1e-9));
 }

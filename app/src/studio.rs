@@ -182,7 +182,7 @@ impl Road for Native {
         tell: &mut dyn FnMut(&str, &Difference),
     ) -> Result<String, LoadError> {
         #[cfg(feature = "gpu")]
-        return crate::parity::parity(wish, tell);
+        return crate::parity::parity(self, wish, tell);
         #[cfg(not(feature = "gpu"))]
         {
             let _ = (wish, tell);

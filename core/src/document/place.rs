@@ -145,7 +145,7 @@ pub enum GridPlane {
     Upright,
 }
 
-/// What surfaces are made of where a texture does not say.
+/// What walls, floors, occluders and seats are made of where a texture does not say.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Materials {

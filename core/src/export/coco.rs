@@ -3,7 +3,7 @@
 //! The part of a frame is a text of one line for the image and one for each annotation, ready to be
 //! copied into the index, which is thereby written with little memory for any number of frames.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fs::File;
 use std::io::{BufRead, BufReader};
 use std::path::Path;
@@ -15,7 +15,7 @@ use super::atomic::Pending;
 use super::layout::FrameFile;
 use super::manifest::{DatasetInfo, Identity};
 use super::rle::{self, Rle};
-use super::{ExportError, FrameSet, Layout, SERIALISES};
+use super::{ExportError, FrameSet, Layout, SERIALISES, SkippedAsset};
 use crate::label::annotation::{
     Annotations, KEYPOINT_NAMES, Keypoint, PersonLabel, PersonMeta, SKELETON,
 };
@@ -58,6 +58,8 @@ struct ImageExtras<'a> {
     instance: Option<String>,
     #[serde(skip_serializing_if = "Option::is_none")]
     semantic: Option<String>,
+    #[serde(skip_serializing_if = "<[_]>::is_empty")]
+    skipped_assets: &'a [SkippedAsset],
 }
 
 #[derive(Serialize)]
@@ -110,7 +112,11 @@ struct PointVisibility {
 ///
 /// # Errors
 /// When the labels contradict each other or hold a number that is not finite.
-pub(super) fn fragment(info: &DatasetInfo, labels: &Annotations) -> Result<Vec<u8>, ExportError> {
+pub(super) fn fragment(
+    info: &DatasetInfo,
+    labels: &Annotations,
+    skipped_assets: &[SkippedAsset],
+) -> Result<Vec<u8>, ExportError> {
     let unsound = |what| ExportError::Unsound { frame: labels.frame, what };
     check(labels).map_err(unsound)?;
     let wants = |output| info.outputs.contains(&output);
@@ -130,6 +136,7 @@ pub(super) fn fragment(info: &DatasetInfo, labels: &Annotations) -> Result<Vec<u
             scene: file(FrameFile::Scene),
             instance: wants(Output::Instance).then(|| file(FrameFile::Instance)),
             semantic: wants(Output::Semantic).then(|| file(FrameFile::Semantic)),
+            skipped_assets,
         },
     };
     let mut bytes = line(&image);
@@ -294,17 +301,28 @@ enum Lines {
     Annotations,
 }
 
+/// What the frames of an index have in common.
+pub(super) struct Occurring {
+    /// Who recurs, by id.
+    pub identities: Vec<Identity>,
+    /// Pictures that were passed over.
+    pub skipped: BTreeSet<SkippedAsset>,
+}
+
 /// Puts the index together from the parts of the frames, in ascending order of the frames, and
-/// gives those who recur in it, by their ids.
+/// gives what occurs in it.
 ///
 /// # Errors
 /// When a part cannot be read or the index cannot be written; an older index is untouched then.
-pub(super) fn assemble(layout: &Layout, frames: &FrameSet) -> Result<Vec<Identity>, ExportError> {
+pub(super) fn assemble(layout: &Layout, frames: &FrameSet) -> Result<Occurring, ExportError> {
     let mut index = Pending::open(&layout.annotations())?;
     let mut identities = BTreeMap::new();
+    let mut skipped = BTreeSet::new();
     index.append(&head())?;
     index.append(b",\n\"images\":[")?;
-    copy(layout, frames, Lines::Images, &mut index, &mut |_| {})?;
+    copy(layout, frames, Lines::Images, &mut index, &mut |line| {
+        skipped.extend(skipped_assets(line));
+    })?;
     index.append(b"],\n\"annotations\":[")?;
     copy(layout, frames, Lines::Annotations, &mut index, &mut |line| {
         if let Some(found) = identity(line) {
@@ -314,7 +332,25 @@ pub(super) fn assemble(layout: &Layout, frames: &FrameSet) -> Result<Vec<Identit
     index.append(b"]}\n")?;
     index.sync()?;
     index.publish()?;
-    Ok(identities.into_values().collect())
+    Ok(Occurring { identities: identities.into_values().collect(), skipped })
+}
+
+/// What an image's line says of pictures that were passed over.
+fn skipped_assets(line: &str) -> Vec<SkippedAsset> {
+    #[derive(Deserialize)]
+    struct Line {
+        figurant: Extras,
+    }
+    #[derive(Deserialize)]
+    struct Extras {
+        skipped_assets: Vec<SkippedAsset>,
+    }
+    // Few lines of few data sets say anything.
+    if !line.contains("\"skipped_assets\":") {
+        return Vec::new();
+    }
+    serde_json::from_str(line)
+        .map_or_else(|_| Vec::new(), |line: Line| line.figurant.skipped_assets)
 }
 
 /// The parts of an annotation's line that say who it is.

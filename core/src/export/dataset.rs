@@ -6,7 +6,8 @@ use std::path::{Path, PathBuf};
 use super::atomic::{self, Pending};
 use super::layout::FrameFile;
 use super::{
-    DatasetInfo, Existing, ExportError, FrameSet, Layout, Report, coco, folder, manifest, picture,
+    DatasetInfo, Existing, ExportError, FrameSet, Layout, Report, SkippedAsset, coco, folder,
+    manifest, picture,
 };
 use crate::label::annotation::{Annotations, SemanticClass};
 use crate::plan::Output;
@@ -84,7 +85,8 @@ impl Dataset {
 
     /// The files of a frame, as bytes. Touches no disk.
     ///
-    /// `picture` is 8-bit sRGB, `width * height * 3` long.
+    /// `picture` is 8-bit sRGB, `width * height * 3` long; `skipped` are pictures of the assets in whose
+    /// place it shows others.
     ///
     /// # Errors
     /// When something that is wanted is missing, labels contradict each other, or an encoder refuses.
@@ -93,6 +95,7 @@ impl Dataset {
         scene: &Scene,
         picture: Option<&[u8]>,
         labels: &Annotations,
+        skipped: &[SkippedAsset],
     ) -> Result<EncodedFrame, ExportError> {
         let (width, height) = (labels.width, labels.height);
         let missing = |what: &str| ExportError::Unsound {
@@ -119,7 +122,7 @@ impl Dataset {
             add(FrameFile::Semantic, picture::png_palette(ids, width, height, &palette)?);
         }
         add(FrameFile::Scene, scene_json(scene)?);
-        add(FrameFile::Fragment, coco::fragment(&self.info, labels)?);
+        add(FrameFile::Fragment, coco::fragment(&self.info, labels, skipped)?);
         Ok(EncodedFrame { files })
     }
 
@@ -130,8 +133,8 @@ impl Dataset {
     /// When a part of the index cannot be read or a file cannot be written.
     pub fn finish(&self, report: &Report) -> Result<(), ExportError> {
         let layout = &self.layout;
-        let identities = coco::assemble(layout, &report.done)?;
-        atomic::write(&layout.report(), &report.to_json())?;
+        let coco::Occurring { identities, skipped } = coco::assemble(layout, &report.done)?;
+        atomic::write(&layout.report(), &report.to_json(&skipped))?;
         folder::sync(layout)?;
         let manifest = manifest::to_json(&self.info, &report.done, &identities);
         atomic::write(&layout.manifest(), &manifest)?;
@@ -209,7 +212,7 @@ mod tests {
     fn commit(dataset: &Dataset, frame: u32, people: u16) {
         let (scene, picture) = (sample::scene(frame), sample::picture(frame));
         let encoded =
-            dataset.encode(&scene, Some(&picture), &sample::labels(frame, people)).unwrap();
+            dataset.encode(&scene, Some(&picture), &sample::labels(frame, people), &[]).unwrap();
         encoded.stage().unwrap().commit().unwrap();
     }
 
@@ -341,7 +344,7 @@ mod tests {
             *id = if *id == 1 { 0 } else { *id };
         }
         let encoded =
-            dataset.encode(&sample::scene(0), Some(&sample::picture(0)), &labels).unwrap();
+            dataset.encode(&sample::scene(0), Some(&sample::picture(0)), &labels, &[]).unwrap();
         encoded.stage().unwrap().commit().unwrap();
         dataset.finish(&report(0..1, [0])).unwrap();
         let index = json(dataset.layout().annotations());
@@ -398,7 +401,7 @@ mod tests {
         commit(&dataset, 0, 1);
         let before = tree(dir.path());
         let encoded = dataset
-            .encode(&sample::scene(1), Some(&sample::picture(1)), &sample::labels(1, 2))
+            .encode(&sample::scene(1), Some(&sample::picture(1)), &sample::labels(1, 2), &[])
             .unwrap();
         // Killed while staging: temporary names, which a drop removes and a new run clears.
         let staged = encoded.stage().unwrap();
@@ -486,7 +489,7 @@ mod tests {
         for (spoil, expected) in spoils {
             let mut labels = sample::labels(5, 2);
             spoil(&mut labels);
-            let result = dataset.encode(&sample::scene(5), Some(&sample::picture(5)), &labels);
+            let result = dataset.encode(&sample::scene(5), Some(&sample::picture(5)), &labels, &[]);
             let error = result.unwrap_err();
             assert!(!error.is_storage());
             let error = error.to_string();
@@ -494,8 +497,9 @@ mod tests {
         }
         let mut scene = sample::scene(5);
         scene.exposure_ev100 = f64::NAN;
-        let error =
-            dataset.encode(&scene, Some(&sample::picture(5)), &sample::labels(5, 2)).unwrap_err();
+        let error = dataset
+            .encode(&scene, Some(&sample::picture(5)), &sample::labels(5, 2), &[])
+            .unwrap_err();
         assert!(
             error.to_string().contains("frame 5: the scene holds a number that is not finite"),
             "{error}"
@@ -508,7 +512,7 @@ mod tests {
         let dataset = create(dir.path(), sample::all_outputs());
         let mut labels = sample::labels(0, 1);
         labels.people[0].keypoints.as_mut().unwrap()[5].image_px = [f64::NAN; 2];
-        dataset.encode(&sample::scene(0), Some(&sample::picture(0)), &labels).unwrap();
+        dataset.encode(&sample::scene(0), Some(&sample::picture(0)), &labels, &[]).unwrap();
     }
 
     #[test]

@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 use std::ops::Range;
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::FrameSet;
 
@@ -17,7 +17,7 @@ pub struct FailedFrame {
 }
 
 /// A picture that could not be used, and in whose place another one stands.
-#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub struct SkippedAsset {
     /// Its id.
     pub id: String,
@@ -34,7 +34,7 @@ pub struct Report {
     pub done: FrameSet,
     /// The frames that are not, for they went wrong.
     pub failed: Vec<FailedFrame>,
-    /// Pictures that were passed over.
+    /// Pictures that were passed over in this run; the file lists those of all frames that are there.
     pub skipped: BTreeSet<SkippedAsset>,
     /// Whether the run was stopped before it came to all frames.
     pub interrupted: bool,
@@ -58,7 +58,7 @@ impl Report {
     }
 
     /// The bytes of the file; frames in ascending order.
-    pub(super) fn to_json(&self) -> Vec<u8> {
+    pub(super) fn to_json(&self, skipped_assets: &BTreeSet<SkippedAsset>) -> Vec<u8> {
         let mut failed: Vec<_> = self.failed.iter().collect();
         failed.sort();
         super::pretty_json(&File {
@@ -66,7 +66,7 @@ impl Report {
             frames_done: self.done.len(),
             interrupted: self.interrupted,
             failed,
-            skipped_assets: &self.skipped,
+            skipped_assets,
         })
     }
 }

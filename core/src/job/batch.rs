@@ -199,9 +199,9 @@ impl<E: std::error::Error> Worker<'_, E> {
         made: &RenderedFrame,
         times: &mut StageTimes,
     ) -> Result<StagedFrame, ExportError> {
-        let RenderedFrame { scene, picture, annotations, .. } = made;
+        let RenderedFrame { scene, picture, annotations, skipped, .. } = made;
         let encoded = times.measure("encode", || {
-            self.order.dataset.encode(scene, picture.as_deref(), annotations)
+            self.order.dataset.encode(scene, picture.as_deref(), annotations, skipped)
         })?;
         times.measure("write", || encoded.stage())
     }

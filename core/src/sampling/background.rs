@@ -9,7 +9,7 @@ use super::solid::Solid;
 use super::value::{color, item, number, rotation_at, vector};
 use super::{Catalogue, keys};
 use crate::base::rng::Key;
-use crate::document::{Choice, Color, Document, Occluders, Param};
+use crate::document::{Choice, Color, Document, Materials, Occluders, Param};
 use crate::scene::{Camera, Material, Object, Placement, Role, Shape};
 
 /// Thickness of the floor; its upper face is where the document says.
@@ -17,8 +17,12 @@ const FLOOR_THICKNESS_M: f64 = 0.1;
 /// Sizes of the seed's primitives at scale 1: five inches, spheres six.
 const BASE_SIZE_M: f64 = 0.127;
 const SPHERE_SIZE_M: f64 = 0.1524;
-/// The lane of the materials of occluders; wall and floor have 1 and 2.
+/// Lanes that keep the materials of surfaces of one slot apart.
 const OCCLUDER_LANE: u16 = 0;
+const WALL_LANE: u16 = 1;
+const FLOOR_LANE: u16 = 2;
+/// That of what somebody sits on.
+pub(super) const SEAT_LANE: u16 = 3;
 
 pub(super) fn objects(
     document: &Document,
@@ -50,21 +54,18 @@ struct Finish<'a> {
 }
 
 impl Surfaces<'_> {
-    /// `place` keeps the materials of walls, floors and occluders apart.
-    fn material(&self, finish: &Finish, slot: u32, place: u16) -> Material {
-        let draws = self.draws.at(Place::Surface(slot, place));
-        let of = |key| draws.of(key, slot);
-        let rules = &self.document.materials;
-        let rule =
-            |param, key| number(param, draws.random_if(rules.enabled).of(key, slot).lane(place));
+    fn material(&self, finish: &Finish, slot: u32, lane: u16) -> Material {
+        let of = |key| self.draws.at(Place::Surface(slot, lane)).of(key, slot);
+        let [roughness, metallic, normal_strength] =
+            finish_of(&self.document.materials, self.draws, slot, lane);
         Material {
             texture: asset(finish.texture.0, &self.catalogue.textures, of(finish.texture.1)),
             base_color: color(finish.color.0, of(finish.color.1)),
             hue_offset_deg: number(finish.hue_offset_deg.0, of(finish.hue_offset_deg.1)),
             uv_repeat: finish.uv_repeat,
-            roughness: rule(&rules.roughness, keys::MATERIAL_ROUGHNESS),
-            metallic: rule(&rules.metallic, keys::MATERIAL_METALLIC),
-            normal_strength: rule(&rules.normal_strength, keys::MATERIAL_NORMAL),
+            roughness,
+            metallic,
+            normal_strength,
         }
     }
 
@@ -84,7 +85,7 @@ impl Surfaces<'_> {
                 rotation: DQuat::IDENTITY,
                 scale: DVec3::from_array(wall.size_m),
             },
-            material: self.material(&finish, 0, 1),
+            material: self.material(&finish, 0, WALL_LANE),
         })
     }
 
@@ -105,7 +106,7 @@ impl Surfaces<'_> {
                 rotation: DQuat::IDENTITY,
                 scale: DVec3::new(floor.size_m[0], FLOOR_THICKNESS_M, floor.size_m[1]),
             },
-            material: self.material(&finish, 0, 2),
+            material: self.material(&finish, 0, FLOOR_LANE),
         })
     }
 
@@ -131,6 +132,17 @@ impl Surfaces<'_> {
             });
         }
     }
+}
+
+/// Roughness, metal and strength of the normal map of a surface of a slot.
+pub(super) fn finish_of(rules: &Materials, draws: Draws, slot: u32, lane: u16) -> [f64; 3] {
+    let draws = draws.at(Place::Surface(slot, lane)).random_if(rules.enabled);
+    let rule = |param, key| number(param, draws.of(key, slot).lane(lane));
+    [
+        rule(&rules.roughness, keys::MATERIAL_ROUGHNESS),
+        rule(&rules.metallic, keys::MATERIAL_METALLIC),
+        rule(&rules.normal_strength, keys::MATERIAL_NORMAL),
+    ]
 }
 
 /// Where occluders stand; nowhere if there are none.

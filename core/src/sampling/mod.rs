@@ -145,7 +145,7 @@ impl Sampler {
             exposure_ev100: post::exposure_ev100(&document.post, draws),
             post: post::post(&document.post, draws),
             objects: background::objects(document, catalogue, draws, &camera),
-            people: people::people(&document.people, catalogue, faces, draws, &camera),
+            people: people::people(document, catalogue, faces, draws, &camera),
             jpeg_quality: output::jpeg_quality(&document.output, draws),
         }
     }
@@ -168,7 +168,7 @@ impl Sampler {
         let Self { document, catalogue, faces, links } = self;
         let draws = Draws::linked(document.seed, frame, links);
         let camera = camera::camera(document, draws);
-        let people = people::people(&document.people, catalogue, faces, draws, &camera);
+        let people = people::people(document, catalogue, faces, draws, &camera);
         let member = |p: Person| {
             let what = (&p.body, &p.look, &p.outfit);
             (p.slot + 1, cast::member(p.name.as_deref(), what, &cast::dyed(&p.outfit), catalogue))

@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 
+use super::background::{SEAT_LANE, finish_of};
 use super::linked::{Draw, Draws, Place, Somebody, Spot};
 use super::look::FaceShape;
 use super::place::{PEOPLE, Places, Setting, places};
@@ -9,22 +10,24 @@ use super::solid::Solid;
 use super::value::{number, rotation_at};
 use super::{Catalogue, body, cast, keys, look, outfit, pose};
 use crate::base::rng::{self, Key};
-use crate::document::{self, cast::Member};
+use crate::document::{self, Document, cast::Member};
 use crate::scene::{Body, Camera, Look, Outfit, Person, Placement, Sex};
 
 pub(super) fn people(
-    people: &document::People,
+    document: &Document,
     catalogue: &Catalogue,
     faces: &[FaceShape],
     draws: Draws,
     camera: &Camera,
 ) -> Vec<Person> {
+    let people = &document.people;
     let company = Company { people, catalogue, faces };
     let standing = Standing::new(people, draws, camera);
     let person = |(slot, position_m)| {
         let who = standing.who(slot);
         let (body, look, outfit) = company.person(who.known, who.lasting, who.here);
-        let (pose, seat) = pose::pose(people, &outfit, catalogue, who.here);
+        let finish = finish_of(&document.materials, draws, slot, SEAT_LANE);
+        let (pose, seat) = pose::pose(people, &outfit, catalogue, who.here, finish);
         Person {
             slot,
             identity: who.identity,

@@ -14,17 +14,16 @@ use crate::scene::{HandShape, Material, OuterKind, Outfit, Pose, PoseBlend, Seat
 const FARTHEST: f64 = 2.5;
 /// Lanes between the angles of the trunk, of the left and of the right.
 const PLACE_LANES: usize = 64;
-/// Of wood, cloth and plastics alike.
-const SEAT_ROUGHNESS: f64 = 0.6;
 /// How many poses are drawn for clothes that they may not suit.
 const TRIES: u16 = 32;
 
-/// What somebody in some clothes does, and what that takes to sit on.
+/// What somebody in some clothes does, and what that takes to sit on, of this finish.
 pub(super) fn pose(
     people: &document::People,
     outfit: &Outfit,
     catalogue: &Catalogue,
     source: Source,
+    finish: [f64; 3],
 ) -> (Pose, Option<Seat>) {
     let (pose, here) = (&people.pose, source);
     let source = source.random_if(pose.enabled);
@@ -42,7 +41,8 @@ pub(super) fn pose(
         share,
     });
     let gaze = source.of(keys::GAZE);
-    let seat = (name.seated && people.seats.enabled).then(|| seat(&people.seats, catalogue, here));
+    let seat =
+        (name.seated && people.seats.enabled).then(|| seat(&people.seats, catalogue, here, finish));
     let pose = Pose {
         phase: number(&pose.phase, source.of(keys::PHASE)),
         mirrored: flag(&pose.mirrored, source.of(keys::MIRRORED)),
@@ -57,7 +57,12 @@ pub(super) fn pose(
 }
 
 /// Something to sit on, of no certain size.
-fn seat(seats: &document::Seats, catalogue: &Catalogue, source: Source) -> Seat {
+fn seat(
+    seats: &document::Seats,
+    catalogue: &Catalogue,
+    source: Source,
+    [roughness, metallic, normal_strength]: [f64; 3],
+) -> Seat {
     Seat {
         shape: *item(&seats.shape, source.of(keys::SEAT_SHAPE)),
         material: Material {
@@ -65,9 +70,9 @@ fn seat(seats: &document::Seats, catalogue: &Catalogue, source: Source) -> Seat 
             base_color: color(&seats.color, source.of(keys::SEAT_COLOR)),
             hue_offset_deg: number(&seats.hue_offset_deg, source.of(keys::SEAT_HUE)),
             uv_repeat: [1.0; 2],
-            roughness: SEAT_ROUGHNESS,
-            metallic: 0.0,
-            normal_strength: 1.0,
+            roughness,
+            metallic,
+            normal_strength,
         },
     }
 }
