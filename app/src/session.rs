@@ -2,6 +2,7 @@
 //! is asked for what it wants to see.
 
 use std::collections::BTreeSet;
+use std::num::NonZeroUsize;
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Duration;
@@ -9,6 +10,7 @@ use std::time::Duration;
 use figurant_core::plan::{Output, Outputs};
 
 use crate::command::Command;
+use crate::commands::processors;
 use crate::overlay::Overlay;
 use crate::road::LoadError;
 use crate::studio::Loaded;
@@ -36,6 +38,17 @@ pub struct Graphics {
     pub adapter: String,
     /// Whether it is a graphics processor.
     pub hardware: bool,
+}
+
+/// How many threads the native engine makes pictures on. Where the window is drawn by software it
+/// needs a processor itself, so that it goes on moving.
+#[must_use]
+pub fn threads(graphics: Option<&Graphics>) -> NonZeroUsize {
+    let all = processors();
+    match graphics {
+        Some(graphics) if !graphics.hardware => NonZeroUsize::new(all.get() - 1).unwrap_or(all),
+        _ => all,
+    }
 }
 
 /// Size of the picture as a part of the config's.

@@ -1,6 +1,5 @@
 //! The window: `logic` takes what the preview has to say, `ui` shows the panels.
 
-use std::num::NonZeroUsize;
 use std::path::PathBuf;
 
 use eframe::egui::{self, Context, Ui};
@@ -8,10 +7,9 @@ use eframe::egui_wgpu::RenderState;
 use figurant_core::engine::gpu::GpuContext;
 
 use crate::command::Command;
-use crate::commands::processors;
 use crate::layout::Layout;
 use crate::panels;
-use crate::session::{Graphics, Session};
+use crate::session::{Graphics, Session, threads};
 use crate::studio::shader_folder;
 use crate::theme;
 use crate::viewport::paint::Screen;
@@ -44,7 +42,7 @@ impl Shell {
             .map(|context| GpuContext { shaders: shader_folder(), ..context });
         let graphics =
             context.as_ref().map(|c| Graphics { adapter: c.name.clone(), hardware: c.hardware });
-        let threads = threads_of_preview(context.as_ref());
+        let threads = threads(graphics.as_ref());
         let waker = ctx.clone();
         let mut preview =
             Preview::start(context, threads, Box::new(move || waker.request_repaint()))?;
@@ -93,16 +91,6 @@ impl Shell {
                 self.session.queue.push(command);
             }
         }
-    }
-}
-
-/// How many threads pictures are made on. Where the window is drawn by software it needs a processor
-/// itself, so that it goes on moving.
-fn threads_of_preview(context: Option<&GpuContext>) -> NonZeroUsize {
-    let all = processors();
-    match context {
-        Some(context) if !context.hardware => NonZeroUsize::new(all.get() - 1).unwrap_or(all),
-        _ => all,
     }
 }
 

@@ -2,7 +2,7 @@
 
 use eframe::egui::{Label, RichText, Ui};
 
-use crate::session::Session;
+use crate::session::{Session, threads};
 use crate::theme;
 use crate::viewport::worker::Renderer;
 
@@ -16,10 +16,9 @@ pub fn ui(ui: &mut Ui, session: &mut Session) {
             .on_hover_text(format!("{NATIVE} (G switches)"));
         let hint = match &graphics {
             Some(g) if g.hardware => format!("Renders on {} (G switches).", g.adapter),
-            Some(g) => format!(
-                "Renders on {}, which is software: a frame takes seconds (G switches).",
-                g.adapter
-            ),
+            Some(g) => {
+                format!("Renders on {}, which is software and slower (G switches).", g.adapter)
+            }
             None => "The window has no device with compute shaders.".to_owned(),
         };
         ui.add_enabled_ui(graphics.is_some(), |ui| {
@@ -29,7 +28,10 @@ pub fn ui(ui: &mut Ui, session: &mut Session) {
         });
         let adapter = match (session.renderer, &graphics) {
             (Renderer::Graphics, Some(graphics)) => graphics.adapter.clone(),
-            _ => format!("{} threads", crate::commands::processors()),
+            _ => match threads(graphics.as_ref()).get() {
+                1 => "1 thread".to_owned(),
+                count => format!("{count} threads"),
+            },
         };
         let text = RichText::new(&adapter).color(theme::WEAK).small();
         ui.add(Label::new(text).truncate()).on_hover_text(adapter);

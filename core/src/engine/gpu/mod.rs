@@ -23,7 +23,8 @@
 //! pack and copy. So one buffer to read back into is enough for each, and no lock is shared; what
 //! it costs is that each worker holds and uploads its own meshes and textures. Once
 //! buffers are large enough, a frame makes none; only wgpu itself stages what is written to them.
-//! `tests/benches/gpu_submit.rs` measures all of this.
+//! `tests/benches/gpu_submit.rs` measures all of this. A device of software that somebody else waits
+//! for too, such as a window, is given a frame in small parts (`Device::takes_turns`).
 //!
 //! Lists of triangles are made in any order, but no result depends on it: the nearest sample wins,
 //! of equals the earlier drawn.
