@@ -3,7 +3,8 @@
 // The samples of a pixel that show the same smooth stretch of one draw share a fragment, all
 // others get one for each triangle; its weight is its share of the samples. Developing comes
 // before the sum over a pixel's fragments, so that a bright edge stays smooth; the sum is made in
-// linear display light. One invocation a pixel.
+// linear display light. Where light is kept, pixels are developed later (finish.wgsl), and the sum is
+// made of compressed light. One invocation a pixel.
 
 @group(0) @binding(1) var<uniform> raster_target: Target;
 @group(0) @binding(2) var<storage, read> primitives: array<Primitive>;
@@ -44,7 +45,26 @@ fn connected(a: vec2<u32>, b: vec2<u32>) -> bool {
     return fa.x * fb.x + fa.y * fb.y + fa.z * fb.z >= CREASE;
 }
 
-// Display light of a fragment.
+// What the sum over a pixel's fragments is made of: display light, or compressed light where that is
+// kept.
+fn summand(light: vec3<f32>, at: vec2<f32>, pixel: vec2<u32>) -> vec3<f32> {
+    if KEEPS_LIGHT {
+        return compressed(light);
+    }
+    return developed(light, at, pixel);
+}
+
+// How far out of focus the nearest sample of a pixel is, pixels.
+fn blur_of(first: u32) -> f32 {
+    var nearest = 0.0;
+    for (var i = 0u; i < SAMPLES; i++) {
+        let own = samples[first + i];
+        nearest = max(nearest, select(bitcast<f32>(own.y), 0.0, own.x == NOTHING));
+    }
+    return blur_radius_px(nearest);
+}
+
+// What a fragment adds to its pixel.
 fn fragment(slot: u32, at: vec2<f32>, pixel: vec2<u32>) -> vec3<f32> {
     let draw = primitives[slot].draw;
     let point = surface_point(primitives[slot].corners, at, surfaces[draw].flags);
@@ -55,16 +75,16 @@ fn fragment(slot: u32, at: vec2<f32>, pixel: vec2<u32>) -> vec3<f32> {
         own = surfaces[draw].own_blockers;
     }
     let light = reflected(point, look, metallic_wrap.x, metallic_wrap.y, own);
-    return developed(light, at, pixel);
+    return summand(light, at, pixel);
 }
 
-// Display light of a pixel whose samples start at `first`.
+// The sum over a pixel whose samples start at `first`.
 fn pixel_color(first: u32, corner: vec2<f32>) -> vec3<f32> {
     let pixel = vec2<u32>(corner);
     if SAMPLES == 1u {
         let own = samples[first];
         if own.x == NOTHING {
-            return developed(backdrop(corner + 0.5), corner + 0.5, pixel);
+            return summand(backdrop(corner + 0.5), corner + 0.5, pixel);
         }
         return fragment(own.x, corner + vec2<f32>(POSITIONS[0]) * (1.0 / 16.0), pixel);
     }
@@ -103,7 +123,7 @@ fn pixel_color(first: u32, corner: vec2<f32>) -> vec3<f32> {
         color += fragment(own.x, at, pixel) * (f32(count) / f32(SAMPLES));
     }
     if nothing > 0u {
-        let light = developed(backdrop(corner + 0.5), corner + 0.5, pixel);
+        let light = summand(backdrop(corner + 0.5), corner + 0.5, pixel);
         color += light * (f32(nothing) / f32(SAMPLES));
     }
     return color;
@@ -128,5 +148,14 @@ fn main(
         return;
     }
     let color = pixel_color(pixel * SAMPLES, corner);
-    picture[pixel] = encode(color, vec2<u32>(id.x, id.y + raster_target.first_y));
+    let place = vec2<u32>(id.x, id.y + raster_target.first_y);
+    if KEEPS_LIGHT {
+        // Of the whole picture, as what comes next looks beyond bands.
+        let at = (place.y * raster_target.width + place.x) * 2u;
+        let words = packed_light(vec4<f32>(turned_back(color), blur_of(pixel * SAMPLES)));
+        picture[at] = words.x;
+        picture[at + 1u] = words.y;
+        return;
+    }
+    picture[pixel] = encode(color, place);
 }

@@ -17,7 +17,7 @@ use figurant_core::job::{FrameMaker, RenderedFrame};
 use figurant_core::label::annotation::{
     Annotations, CameraLabel, Keypoint, PersonLabel, PersonMeta, Visibility,
 };
-use figurant_core::plan::{Output, StageTimes};
+use figurant_core::plan::{Output, Outputs, PassPlan, SceneFacts, StageTimes};
 use figurant_core::scene::{Camera, Environment, Lights, Post, Scene, Sex};
 use glam::{DQuat, DVec3};
 use serde_json::{Value, json};
@@ -53,6 +53,7 @@ impl FrameMaker for Painter {
             position_m: DVec3::new(0.0, 0.0, 5.0),
             rotation: DQuat::IDENTITY,
             near_m: 0.1,
+            depth_of_field: None,
             distortion: None,
         };
         let inside =
@@ -123,6 +124,7 @@ impl FrameMaker for Painter {
                 semantic: Some(ids.iter().map(|id| u8::from(*id != 0)).collect()),
                 instance_ids: Some(ids),
             },
+            plan: PassPlan::new(&Outputs::new(), SceneFacts::default()),
             times: StageTimes::default(),
         })
     }

@@ -139,7 +139,7 @@ fn measure(
 /// Writes the picture of a person and, beside it, the same with its flaws marked.
 fn picture(scene: &Scene, stage: &Stage<'_>, flaws: &[Flaw], to: &Path) {
     let seen = stage.drawn(scene, options(true, 0.25));
-    let plan = PassPlan::new(&Outputs::from([Output::Rgb]), SceneFacts { sun_shadow: true });
+    let plan = PassPlan::new(&Outputs::from([Output::Rgb]), SceneFacts::ANY);
     let mut engine = CpuEngine::default();
     let frame = engine.render(&seen.list, &plan, &mut StageTimes::default()).expect("it renders");
     let pixels = frame.picture.expect("a picture was asked for");

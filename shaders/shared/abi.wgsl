@@ -56,6 +56,17 @@ struct Frame {
     blocker_count: u32,
     // Key of the sensor's noise, mixed.
     sensor_key: u32,
+    // Depth of field: metres to what is sharp, radius at infinity and the largest, pixels, and how often
+    // the picture is halved for it.
+    focus_m: f32,
+    blur_px: f32,
+    blur_limit_px: f32,
+    blur_halvings: u32,
+    // Share of the light that is scattered, 0 for none, and what each level hands on.
+    bloom_share: f32,
+    bloom_spread: f32,
+    pad5: u32,
+    pad6: u32,
     // Rows of the rotation into its axes.
     environment_from_view: array<vec4<f32>, 3>,
     // First word among the texels and log2 of the width of each level, two levels in one.
@@ -231,6 +242,16 @@ struct Light {
     per_range_m2: f32,
     color_cd: vec3<f32>,
     per_radius_m: f32,
+}
+
+// Two levels of scattered light: first texel and size. The light of pixels has NOTHING as its first.
+struct Step {
+    larger_first: u32,
+    smaller_first: u32,
+    larger_size: vec2<u32>,
+    smaller_size: vec2<u32>,
+    pad0: u32,
+    pad1: u32,
 }
 
 // Count and extent of an object's samples in 1/16 pixel; smallest as all ones minus.

@@ -34,7 +34,7 @@ fn measure_engine(
     let wanted: Outputs = outputs.iter().copied().collect();
     let plan = PassPlan::new(
         &wanted,
-        SceneFacts { sun_shadow: list.lights.sun.is_some_and(|s| s.shadow) },
+        SceneFacts::ANY,
     );
     let mut walls = Vec::new();
     let mut stages: Vec<(&'static str, Vec<f64>)> = Vec::new();
@@ -113,7 +113,7 @@ fn main() {
     if let Some(path) = arguments.get(1) {
         let list = crowd(640, 640, 4, 15_000);
         let plan =
-            PassPlan::new(&everything.iter().copied().collect(), SceneFacts { sun_shadow: true });
+            PassPlan::new(&everything.iter().copied().collect(), SceneFacts::ANY);
         let frame = CpuEngine::new(auto)
             .render(&list, &plan, &mut StageTimes::default())
             .expect("the scene is valid");

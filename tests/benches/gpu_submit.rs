@@ -56,7 +56,7 @@ fn frames(preset: &str, count: u32) -> Option<Frames> {
         draw(&sampler.scene(frame), &library, cast, &options).expect("presets draw").list
     };
     let [lists, others] = casts.map(|cast| (0..count).map(|frame| list(frame, &cast)).collect());
-    let plan = PassPlan::new(&Output::ALL.into(), SceneFacts { sun_shadow: true });
+    let plan = PassPlan::new(&Output::ALL.into(), SceneFacts::ANY);
     Some(Frames { lists, others, plan })
 }
 

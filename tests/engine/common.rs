@@ -9,7 +9,7 @@ use glam::{DAffine3, DVec3};
 
 pub fn plan(outputs: &[Output]) -> PassPlan {
     let wanted: Outputs = outputs.iter().copied().collect();
-    PassPlan::new(&wanted, SceneFacts { sun_shadow: true })
+    PassPlan::new(&wanted, SceneFacts::ANY)
 }
 
 pub fn try_render(

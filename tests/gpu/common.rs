@@ -31,7 +31,7 @@ pub fn engine() -> Option<GpuEngine> {
 
 pub fn plan(outputs: &[Output]) -> PassPlan {
     let wanted: Outputs = outputs.iter().copied().collect();
-    PassPlan::new(&wanted, SceneFacts { sun_shadow: true })
+    PassPlan::new(&wanted, SceneFacts::ANY)
 }
 
 pub fn by_gpu(engine: &mut GpuEngine, list: &DrawList, outputs: &[Output]) -> Frame {

@@ -60,6 +60,8 @@ const fn name(pass: Pass) -> &'static str {
         Pass::Visibility => "visibility",
         Pass::Shadow => "shadow",
         Pass::Shade => "shade",
+        Pass::Defocus => "depth of field",
+        Pass::Bloom => "bloom",
         Pass::Display => "display",
         Pass::Resolve => "resolve",
         Pass::Reduce => "reduce",
@@ -70,5 +72,7 @@ const fn reason(why: Skipped) -> &'static str {
     match why {
         Skipped::NotWanted => "skipped: nothing shown needs it",
         Skipped::NoSunShadow => "skipped: no sun casts a shadow",
+        Skipped::InFocus => "skipped: nothing seen is out of focus",
+        Skipped::NoBloom => "skipped: the lens scatters no light",
     }
 }

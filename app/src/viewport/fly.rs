@@ -119,6 +119,7 @@ mod tests {
             position_m: flight.viewpoint.position_m,
             rotation: flight.viewpoint.rotation,
             near_m: 0.1,
+            depth_of_field: None,
             distortion: None,
         };
         let at = camera.project(camera.view_from_world(before)).unwrap();

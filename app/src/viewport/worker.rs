@@ -150,7 +150,7 @@ impl Worker {
             }
         };
         Ok(Shown {
-            plan: desk.studio.plan(&made.scene).delivered(delivery),
+            plan: made.plan,
             pixels,
             annotations: made.annotations,
             scene: made.scene,

@@ -1,5 +1,5 @@
-//! What happens to the light behind the lens, in this order: exposure, vignette, the sensor's noise,
-//! white balance, contrast, saturation, tone curve, grain.
+//! What happens to the light behind the lens, in this order: exposure, bloom, vignette, the sensor's
+//! noise, white balance, contrast, saturation, tone curve, grain.
 //!
 //! Ranges and meanings are those of the seed, PeopleSansPeople. Its grain was switched off.
 
@@ -19,6 +19,11 @@ pub struct Post {
     pub exposure_ev: Param,
     /// Taken off the exposure value; one more doubles the picture's brightness.
     pub compensation_ev: Param,
+    /// Light that the lens scatters round what is bright: the share `2^bloom - 1` of all light, so
+    /// that 0 is none and 1 all of it. The picture keeps its light as a whole.
+    pub bloom: Param,
+    /// How far it is scattered, 0 a few pixels .. 1 over the picture.
+    pub bloom_scatter: Param,
     /// How much darker the corners are: 0 not at all .. 1. At 0.5 the corners are black and the
     /// middles of the edges have 0.4375 of their light.
     pub vignette: Param,
@@ -51,6 +56,8 @@ impl Default for Post {
             // this one, with the surroundings' light, gives its published pictures' mean luma
             // (0.505) and clipped share (1 %).
             compensation_ev: (-1.5).into(),
+            bloom: 0.2.into(),
+            bloom_scatter: 0.7.into(),
             vignette: Param::uniform(0.0, 0.5),
             shot_noise: 0.0.into(),
             read_noise: 0.0.into(),

@@ -117,6 +117,14 @@ fn camera(c: &mut Check, camera: &Camera) {
     c.rotation("camera.rotation_deg", &camera.rotation_deg);
     c.axes("camera.rotation_offset_deg", &camera.rotation_offset_deg, ANGLE);
     c.number("camera.near_m", camera.near_m, Range::from_to(1e-4, 1e3));
+    let blur = &camera.depth_of_field;
+    c.param("camera.depth_of_field.f_number", &blur.f_number, Range::from_to(0.1, 1e6));
+    let focus_m = Range::from_to(1e-3, 1e9);
+    c.param("camera.depth_of_field.focus_distance_m", &blur.focus_distance_m, focus_m);
+    if let Some(focal_length_mm) = &blur.focal_length_mm {
+        let path = "camera.depth_of_field.focal_length_mm";
+        c.param(path, focal_length_mm, Range::above(0.0, 1e6));
+    }
     if let Some(distortion) = &camera.distortion {
         // Whether a picture folds over depends on its size and the field of view, and is found out
         // frame by frame.
@@ -508,6 +516,8 @@ fn outfit_rows(c: &mut Check, rows: &[OutfitRow]) {
 fn post(c: &mut Check, post: &Post) {
     c.param("post.exposure_ev", &post.exposure_ev, Range::from_to(-20.0, 40.0));
     c.param("post.compensation_ev", &post.compensation_ev, Range::from_to(-20.0, 20.0));
+    c.param("post.bloom", &post.bloom, Range::from_to(0.0, 1.0));
+    c.param("post.bloom_scatter", &post.bloom_scatter, Range::from_to(0.0, 1.0));
     c.param("post.vignette", &post.vignette, Range::from_to(0.0, 1.0));
     c.param("post.shot_noise", &post.shot_noise, SHARE);
     c.param("post.read_noise", &post.read_noise, SHARE);

@@ -32,6 +32,8 @@ pub struct DrawList {
     pub lights: Lights,
     /// Linear scale from nits to the sensor's 0..1.
     pub exposure: f32,
+    /// How what is not in focus blurs, where anything is.
+    pub defocus: Option<Defocus>,
     /// What else happens to the light behind the lens.
     pub grade: Grade,
     /// Largest side of the sun's shadow map in texels, a multiple of 64.
@@ -243,7 +245,40 @@ impl Blocker {
     pub const OWN_BIAS: f32 = 0.25;
 }
 
-/// From exposed light to the picture: vignette, the sensor's noise, colour, tone curve, and grain on
+/// Light out of focus: what lies at a distance z along the view axis becomes a disk whose radius is
+/// that of infinity times `|1 - focus / z|`, within limits.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Defocus {
+    /// Metres along the view axis to what is sharp.
+    pub focus_m: f32,
+    /// Radius at infinity, pixels.
+    pub at_infinity_px: f32,
+    /// Largest radius of all that is seen, pixels.
+    pub largest_px: f32,
+}
+
+impl Defocus {
+    /// A disk of this radius is a pixel, and all smaller ones are.
+    pub const SHARP_PX: f64 = 0.5;
+    /// What lies before the focus is blurred no more than this times what lies at infinity.
+    pub const NEAR_LIMIT: f64 = 2.0;
+}
+
+/// Light that a lens scatters: `light + share (scattered - light)`.
+///
+/// What is scattered is a pyramid of pictures, each half as large as the one before and smoothed by
+/// the binomial 1 3 3 1 along both axes, that is built up again from the smallest with
+/// `level + spread (larger - level)`, the larger one drawn out with 1 3 3 1 again (Jimenez, "Next
+/// generation post processing in Call of Duty", SIGGRAPH 2014). All weights sum to one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Bloom {
+    /// Share of the light that is scattered, 0..1.
+    pub share: f32,
+    /// Share that each level hands on to the next larger one, 0..1.
+    pub spread: f32,
+}
+
+/// From exposed light to the picture: bloom, vignette, the sensor's noise, colour, tone curve, and grain on
 /// what is encoded.
 ///
 /// Noise is that of photons and of reading them out (Foi, Trimeche, Katkovnik and Egiazarian,
@@ -252,6 +287,8 @@ impl Blocker {
 /// read^2) z`, with z of mean 0 and standard deviation 1.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Grade {
+    /// Light that the lens scatters, where it scatters any.
+    pub bloom: Option<Bloom>,
     /// 0 none .. 1: `1 - d.d` of the light is left at `d = min(3 vignette |xy / size - 1/2|, 1)`.
     pub vignette: f32,
     /// Variance of the sensor's noise per unit of light.

@@ -6,7 +6,7 @@
 
 use glam::{DMat3, DVec3};
 
-use super::abi::{ColorGrade, Grade};
+use super::abi::{Bloom, ColorGrade, Grade};
 use crate::base::color::XYZ_FROM_LINEAR;
 use crate::scene::Post;
 
@@ -29,6 +29,7 @@ const LUMA: DVec3 = DVec3::new(0.272_228_7, 0.674_081_8, 0.053_689_5);
 /// What is to be done with the light of a scene.
 pub fn grade(post: &Post) -> Grade {
     Grade {
+        bloom: bloom(post),
         vignette: post.vignette as f32,
         shot_noise: post.shot_noise as f32,
         read_noise: post.read_noise as f32,
@@ -37,6 +38,14 @@ pub fn grade(post: &Post) -> Grade {
         grain: post.grain as f32,
         grain_key: post.grain_key,
     }
+}
+
+/// Scattered light; nothing where there is none.
+fn bloom(post: &Post) -> Option<Bloom> {
+    // Those of the seed's engine.
+    let share = (libm::exp2(post.bloom) - 1.0) as f32;
+    let spread = (0.05 + 0.9 * post.bloom_scatter) as f32;
+    (share > 0.0).then_some(Bloom { share, spread })
 }
 
 /// White balance, contrast and saturation; nothing where they do nothing.

@@ -10,6 +10,7 @@
 //! | [`abi`] | the structs both engines read |
 //! | `blockers` | bodies as spheres, for ambient occlusion |
 //! | `cast` | the people of earlier frames |
+//! | `focus` | whether anything is out of focus, and by how much |
 //! | [`frustum`] | what the camera may see, and whose shadow it may see |
 //! | `lights` | lights in view space |
 //! | `objects` | walls, floors, occluders |
@@ -19,6 +20,7 @@
 pub mod abi;
 mod blockers;
 mod cast;
+mod focus;
 pub mod frustum;
 mod grade;
 mod lights;
@@ -129,6 +131,7 @@ pub fn draw(
         objects::add(&mut drawing)?;
     }
     people::add(&mut drawing)?;
+    drawing.drawn.list.defocus = focus::defocus(&scene.camera, drawing.nearest_m);
     Ok(drawing.drawn)
 }
 
@@ -145,6 +148,8 @@ struct Drawing<'a> {
     /// View space, towards the sun, when its shadows are wanted.
     shadow_direction: Option<DVec3>,
     surfaces: surfaces::Surfaces,
+    /// No nearer does anything come that may be seen, along the view axis.
+    nearest_m: f64,
     drawn: Drawn,
 }
 
@@ -177,16 +182,27 @@ impl<'a> Drawing<'a> {
             finest_focal_px: scene.camera.focal_px() * lens.map_or(1.0, |l| l.magnification()),
             shadow_direction: sun.map(|s| view_from_world.transform_vector3(s.direction_to_sun)),
             surfaces: surfaces::Surfaces::default(),
+            nearest_m: f64::INFINITY,
             drawn: Drawn { list, ..Drawn::default() },
         })
     }
 
     /// Pixels that a metre spans at most, at the nearest point of a hull of spheres.
     fn px_per_m(&self, hull: &[Sphere]) -> f64 {
-        // The distance along the axis decides; off the axis it is more than the near side suggests,
-        // and round the camera the near plane bounds it.
-        let nearest_m = (-reach_along(DVec3::Z, hull)).max(self.scene.camera.near_m);
-        self.finest_focal_px / nearest_m
+        // The distance along the axis decides; off the axis it is more than the near side suggests.
+        self.finest_focal_px / self.near_side_m(hull)
+    }
+
+    /// How near a hull of spheres comes, along the view axis; no nearer than the near plane.
+    fn near_side_m(&self, hull: &[Sphere]) -> f64 {
+        (-reach_along(DVec3::Z, hull)).max(self.scene.camera.near_m)
+    }
+
+    /// Takes note of how near comes what is drawn.
+    fn note_near_side(&mut self, hull: &[Sphere], relevance: Relevance) {
+        if relevance.in_view {
+            self.nearest_m = self.nearest_m.min(self.near_side_m(hull));
+        }
     }
 
     /// Whether what lies in a hull of spheres may be seen, and whether its shadow may be.

@@ -27,6 +27,7 @@ pub fn add_one(drawing: &mut Drawing, object: &Object) -> Result<Option<u32>, Dr
     if !relevance.any() {
         return Ok(None);
     }
+    drawing.note_near_side(&hull, relevance);
     let mesh = shape_mesh(object.shape, detail(drawing, &hull, scale, relevance));
     let material = if drawing.options.shading && relevance.in_view {
         let list = &mut drawing.drawn.list;

@@ -70,6 +70,7 @@ pub fn add(drawing: &mut Drawing) -> Result<(), DrawError> {
         posed.iter().zip(&relevances).zip(dressed).enumerate()
     {
         let mut drawn = describe(index, posed);
+        drawing.note_near_side(&posed.hull, *relevance);
         if let Some(dressed) = dressed {
             let blockers = add_blockers(drawing, posed, *relevance, &drawn);
             drawn.object = Some(add_mesh(drawing, posed, *relevance, &dressed, blockers)?);

@@ -3,7 +3,7 @@
 
 use super::EngineError;
 use crate::draw::DrawList;
-use crate::draw::abi::{Draw, Grade, Material};
+use crate::draw::abi::{Defocus, Draw, Grade, Material};
 use crate::library::mesh::Triangle;
 use crate::library::texture::Texture;
 
@@ -11,6 +11,8 @@ use crate::library::texture::Texture;
 pub(super) const MAX_SIDE: u32 = 8192;
 /// Objects that fit the 16-bit ids.
 const MAX_OBJECTS: u64 = 65_534;
+/// Largest radius of a point out of focus, pixels.
+const MAX_BLUR_PX: u64 = MAX_SIDE as u64;
 /// In [`EngineError::NotFinite`]: not an object.
 const NO_OBJECT: u32 = u32::MAX;
 /// log2 of the largest texture's side.
@@ -91,7 +93,9 @@ fn check_grade(grade: &Grade) -> Result<(), EngineError> {
     let color = grade.color.iter().flat_map(|c| {
         c.before.as_flattened().iter().chain(c.after.as_flattened()).chain([&c.contrast])
     });
-    finite(NO_OBJECT, "a number of the grade", color.chain([&grade.vignette, &grade.grain]))
+    let bloom = grade.bloom.iter().flat_map(|b| [&b.share, &b.spread]);
+    let others = [&grade.vignette, &grade.grain];
+    finite(NO_OBJECT, "a number of the grade", color.chain(bloom).chain(others))
 }
 
 fn check_view_and_lights(list: &DrawList) -> Result<(), EngineError> {
@@ -99,6 +103,11 @@ fn check_view_and_lights(list: &DrawList) -> Result<(), EngineError> {
     let numbers = [view.fx, view.fy, view.cx, view.cy, view.near_m, list.exposure];
     finite(NO_OBJECT, "a number of the view", &numbers)?;
     check_grade(&list.grade)?;
+    if let Some(Defocus { focus_m, at_infinity_px, largest_px }) = list.defocus {
+        let numbers = [focus_m, at_infinity_px, largest_px];
+        finite(NO_OBJECT, "a number of the depth of field", &numbers)?;
+        at_most("blur of the depth of field", largest_px as u64, MAX_BLUR_PX)?;
+    }
     finite(NO_OBJECT, "a number of the view", view.view_from_world.as_flattened())?;
     if view.fx <= 0.0 || view.fy <= 0.0 || view.near_m <= 0.0 {
         return invalid("focal length and near plane", 0, 0, "positive numbers");

@@ -4,7 +4,7 @@
 //! threads, eight-wide portable SIMD, the same bytes on every machine. `gpu` (feature `gpu`) runs
 //! the same stages as compute shaders by way of wgpu. What they share is `input`, which says what
 //! a draw list must fulfil, `pattern`, where samples lie, `lens` and `squares`, where they lie behind
-//! a lens, and `noise`, the grain of a pixel.
+//! a lens, `noise`, the grain of a pixel, and `optics`, at which size light is spread.
 
 use crate::draw::DrawList;
 use crate::plan::{Frame, PassPlan, StageTimes};
@@ -15,6 +15,7 @@ pub mod gpu;
 mod input;
 mod lens;
 mod noise;
+mod optics;
 mod pattern;
 mod squares;
 

@@ -318,6 +318,7 @@ impl<'a, E: std::error::Error> Clerk<'a, E> {
 mod tests {
     use super::*;
     use crate::export::{Existing, PictureFormat, sample};
+    use crate::plan::{Outputs, PassPlan, SceneFacts};
     use std::collections::BTreeMap;
     use std::fs;
     use std::path::Path;
@@ -356,6 +357,7 @@ mod tests {
                 picture: Some(sample::picture(frame)),
                 annotations: sample::labels(frame, (frame % 5) as u16),
                 skipped: Vec::new(),
+                plan: PassPlan::new(&Outputs::new(), SceneFacts::default()),
                 times,
             })
         }

@@ -18,7 +18,7 @@ use crate::library::Library;
 use crate::library::clip::Clip;
 use crate::library::pose::Pose;
 use crate::library::textures::TextureGroup;
-use crate::plan::{Delivery, Frame, Outputs, Pass, PassPlan, SceneFacts, StageTimes};
+use crate::plan::{Delivery, Frame, Outputs, Pass, PassPlan, SceneFacts, Skipped, StageTimes};
 use crate::sampling::{self, Activity, Catalogue, SampleError, Sampler};
 use crate::scene::{Camera, Scene};
 
@@ -135,11 +135,15 @@ impl Studio {
         self.sampler.scene(frame)
     }
 
-    /// The passes that a scene takes.
+    /// The passes that a scene takes, as far as that is known before it is drawn.
     #[must_use]
     pub fn plan(&self, scene: &Scene) -> PassPlan {
-        let sun_shadow = scene.lights.sun.as_ref().is_some_and(|s| s.shadow);
-        PassPlan::new(&self.outputs, SceneFacts { sun_shadow })
+        let facts = SceneFacts {
+            sun_shadow: scene.lights.sun.as_ref().is_some_and(|s| s.shadow),
+            defocus: scene.camera.depth_of_field.is_some(),
+            bloom: scene.post.bloom > 0.0,
+        };
+        PassPlan::new(&self.outputs, facts)
     }
 
     /// What a document names that the library does not hold.
@@ -157,15 +161,16 @@ impl Studio {
         scene: &Scene,
         times: &mut StageTimes,
     ) -> Result<(Drawn, Frame), FrameError> {
-        self.render(scene, &self.plan(scene), times)
+        let (drawn, frame, _) = self.render(scene, self.plan(scene), times)?;
+        Ok((drawn, frame))
     }
 
     fn render(
         &mut self,
         scene: &Scene,
-        plan: &PassPlan,
+        plan: PassPlan,
         times: &mut StageTimes,
-    ) -> Result<(Drawn, Frame), FrameError> {
+    ) -> Result<(Drawn, Frame, PassPlan), FrameError> {
         let document = self.sampler.document();
         let options = DrawOptions {
             raster: plan.needs_engine(),
@@ -177,12 +182,16 @@ impl Studio {
         let (library, cast, engine) = (&self.library, &self.cast, &mut self.engine);
         self.threads.install(|| {
             let drawn = times.measure("draw", || draw::draw(scene, library, cast, &options))?;
+            let plan = match drawn.list.defocus {
+                Some(_) => plan,
+                None => plan.without(Pass::Defocus, Skipped::InFocus),
+            };
             let frame = if plan.needs_engine() {
-                engine.render(&drawn.list, plan, times)?
+                engine.render(&drawn.list, &plan, times)?
             } else {
                 Frame { width: scene.camera.width, height: scene.camera.height, ..Frame::default() }
             };
-            Ok((drawn, frame))
+            Ok((drawn, frame, plan))
         })
     }
 
@@ -200,12 +209,12 @@ impl Studio {
         let skips = self.sampler.document().assets.on_error == OnError::Skip;
         let skipped = if skips { substitute(&mut scene, &self.library) } else { Vec::new() };
         let plan = self.plan(&scene).delivered(view.delivery);
-        let (drawn, mut rendered) = self.render(&scene, &plan, &mut times)?;
+        let (drawn, mut rendered, plan) = self.render(&scene, plan, &mut times)?;
         let annotations =
             times.measure("label", || label::annotate(&scene, &drawn, &rendered, &self.outputs));
         let picture = rendered.picture.take();
         self.engine.recycle(rendered);
-        Ok(RenderedFrame { scene, picture, annotations, skipped, times })
+        Ok(RenderedFrame { scene, picture, annotations, skipped, plan, times })
     }
 }
 

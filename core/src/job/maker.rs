@@ -2,7 +2,7 @@
 
 use crate::export::SkippedAsset;
 use crate::label::Annotations;
-use crate::plan::StageTimes;
+use crate::plan::{PassPlan, StageTimes};
 use crate::scene::Scene;
 
 /// Everything that was made for one frame.
@@ -16,6 +16,8 @@ pub struct RenderedFrame {
     pub annotations: Annotations,
     /// Pictures in whose place it shows others.
     pub skipped: Vec<SkippedAsset>,
+    /// The passes that made it.
+    pub plan: PassPlan,
     /// Time spent by stage.
     pub times: StageTimes,
 }

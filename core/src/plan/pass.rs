@@ -9,7 +9,7 @@ pub enum Buffer {
     Visibility,
     /// Depth seen from the sun.
     ShadowMap,
-    /// Linear colour of each pixel, before tone mapping.
+    /// Exposed light of each pixel, linear.
     Radiance,
     /// The 8-bit sRGB picture.
     Picture,
@@ -36,6 +36,10 @@ pub enum Pass {
     Shadow,
     /// Shades each pixel once per object.
     Shade,
+    /// Spreads light that is out of focus.
+    Defocus,
+    /// Scatters light round what is bright.
+    Bloom,
     /// Tone map and sRGB.
     Display,
     /// Per-pixel ids and depth.
@@ -46,12 +50,14 @@ pub enum Pass {
 
 impl Pass {
     /// All passes in execution order.
-    pub const ALL: [Self; 8] = [
+    pub const ALL: [Self; 10] = [
         Self::Points,
         Self::Skin,
         Self::Visibility,
         Self::Shadow,
         Self::Shade,
+        Self::Defocus,
+        Self::Bloom,
         Self::Display,
         Self::Resolve,
         Self::Reduce,
@@ -64,7 +70,8 @@ impl Pass {
             Self::Points | Self::Skin => &[],
             Self::Visibility | Self::Shadow => &[Buffer::Vertices],
             Self::Shade => &[Buffer::Vertices, Buffer::Visibility, Buffer::ShadowMap],
-            Self::Display => &[Buffer::Radiance],
+            Self::Defocus => &[Buffer::Visibility, Buffer::Radiance],
+            Self::Bloom | Self::Display => &[Buffer::Radiance],
             Self::Resolve | Self::Reduce => &[Buffer::Visibility],
         }
     }
@@ -77,7 +84,7 @@ impl Pass {
             Self::Skin => &[Buffer::Vertices],
             Self::Visibility => &[Buffer::Visibility],
             Self::Shadow => &[Buffer::ShadowMap],
-            Self::Shade => &[Buffer::Radiance],
+            Self::Shade | Self::Defocus | Self::Bloom => &[Buffer::Radiance],
             Self::Display => &[Buffer::Picture],
             Self::Resolve => &[Buffer::ObjectIds, Buffer::Depth],
             Self::Reduce => &[Buffer::ObjectSamples],

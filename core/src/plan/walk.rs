@@ -5,10 +5,29 @@ use std::collections::BTreeSet;
 use super::{Buffer, Outputs, Pass};
 
 /// What a scene does or does not hold, to shorten a plan further.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct SceneFacts {
-    /// A sun that casts shadows is on, and something casts.
+    /// A sun that casts shadows is on.
     pub sun_shadow: bool,
+    /// The camera has a depth of field.
+    pub defocus: bool,
+    /// The lens scatters light.
+    pub bloom: bool,
+}
+
+impl SceneFacts {
+    /// Where nothing is known, everything may be there.
+    pub const ANY: Self = Self { sun_shadow: true, defocus: true, bloom: true };
+
+    /// Why a scene does without a pass that its outputs would take.
+    const fn skip(self, pass: Pass) -> Option<Skipped> {
+        match pass {
+            Pass::Shadow if !self.sun_shadow => Some(Skipped::NoSunShadow),
+            Pass::Defocus if !self.defocus => Some(Skipped::InFocus),
+            Pass::Bloom if !self.bloom => Some(Skipped::NoBloom),
+            _ => None,
+        }
+    }
 }
 
 /// Why a pass does not run.
@@ -18,6 +37,10 @@ pub enum Skipped {
     NotWanted,
     /// No sun casts a shadow.
     NoSunShadow,
+    /// Nothing that is seen is out of focus.
+    InFocus,
+    /// The lens scatters no light.
+    NoBloom,
 }
 
 /// Where the picture is wanted. Labels are always read back.
@@ -49,8 +72,8 @@ impl PassPlan {
         for pass in Pass::ALL.into_iter().rev() {
             if !pass.writes().iter().any(|b| buffers.contains(b)) {
                 skipped.push((pass, Skipped::NotWanted));
-            } else if pass == Pass::Shadow && !facts.sun_shadow {
-                skipped.push((pass, Skipped::NoSunShadow));
+            } else if let Some(why) = facts.skip(pass) {
+                skipped.push((pass, why));
             } else {
                 passes.push(pass);
                 buffers.extend(pass.reads());
@@ -59,6 +82,17 @@ impl PassPlan {
         passes.reverse();
         skipped.reverse();
         Self { passes, skipped, delivery: Delivery::Readback }
+    }
+
+    /// The same plan without a pass, if it has it.
+    #[must_use]
+    pub fn without(mut self, pass: Pass, why: Skipped) -> Self {
+        if self.runs(pass) {
+            self.passes.retain(|p| *p != pass);
+            let place = self.skipped.iter().take_while(|(p, _)| *p < pass).count();
+            self.skipped.insert(place, (pass, why));
+        }
+        self
     }
 
     /// The same plan with its picture wanted elsewhere.
@@ -104,7 +138,7 @@ mod tests {
     use super::*;
     use crate::plan::Output;
 
-    const LIT: SceneFacts = SceneFacts { sun_shadow: true };
+    const LIT: SceneFacts = SceneFacts::ANY;
 
     fn all_wishes() -> impl Iterator<Item = Outputs> {
         (0..1u32 << Output::ALL.len()).map(|bits| {
@@ -144,15 +178,27 @@ mod tests {
     fn labels_without_a_picture_need_no_shading() {
         let plan = PassPlan::new(&Outputs::from([Output::Box2d, Output::Instance]), LIT);
         assert!(plan.needs_engine());
-        for pass in [Pass::Shadow, Pass::Shade, Pass::Display, Pass::Points] {
+        let unwanted = [Pass::Shadow, Pass::Shade, Pass::Defocus, Pass::Bloom];
+        for pass in unwanted.into_iter().chain([Pass::Display, Pass::Points]) {
             assert!(plan.skipped().contains(&(pass, Skipped::NotWanted)), "{pass:?}");
         }
     }
 
     #[test]
     fn a_sun_that_is_off_costs_no_shadow_map() {
-        let plan = PassPlan::new(&Outputs::from([Output::Rgb]), SceneFacts { sun_shadow: false });
+        let plan = PassPlan::new(&Outputs::from([Output::Rgb]), SceneFacts::default());
         assert!(plan.skipped().contains(&(Pass::Shadow, Skipped::NoSunShadow)));
         assert!(plan.runs(Pass::Shade));
+    }
+
+    #[test]
+    fn a_lens_without_effects_has_no_passes() {
+        let rgb = Outputs::from([Output::Rgb]);
+        let plan = PassPlan::new(&rgb, SceneFacts::default());
+        assert!(plan.skipped().contains(&(Pass::Defocus, Skipped::InFocus)));
+        assert!(plan.skipped().contains(&(Pass::Bloom, Skipped::NoBloom)));
+        let found_out = PassPlan::new(&rgb, SceneFacts { defocus: true, ..SceneFacts::default() });
+        assert!(found_out.runs(Pass::Defocus));
+        assert_eq!(found_out.without(Pass::Defocus, Skipped::InFocus), plan);
     }
 }

@@ -6,8 +6,8 @@ use super::keys;
 use super::linked::Draws;
 use super::value::{number, rotation, vector};
 use crate::base::lens::Lens;
-use crate::document::{Brown, Distortion, Document, Fisheye};
-use crate::scene::Camera;
+use crate::document::{self, Brown, Distortion, Document, Fisheye};
+use crate::scene::{Camera, DepthOfField};
 
 pub(super) fn camera(document: &Document, draws: Draws) -> Camera {
     let camera = &document.camera;
@@ -15,26 +15,46 @@ pub(super) fn camera(document: &Document, draws: Draws) -> Camera {
     let offset = of(keys::CAMERA_ROTATION_OFFSET);
     let angle = |i: u16| number(&camera.rotation_offset_deg[usize::from(i)], offset.lane(i));
     let offset_deg = DVec3::new(angle(0), angle(1), angle(2));
+    let fov_vertical_deg = match &camera.focal_length_mm {
+        None => number(&camera.fov_vertical_deg, of(keys::CAMERA_FOV)),
+        Some(focal_length_mm) => {
+            let f = number(focal_length_mm, of(keys::CAMERA_FOCAL_LENGTH));
+            fov_vertical_deg(f, camera.sensor_height_mm)
+        }
+    };
     Camera {
         width: document.image.width,
         height: document.image.height,
-        fov_vertical_deg: match &camera.focal_length_mm {
-            None => number(&camera.fov_vertical_deg, of(keys::CAMERA_FOV)),
-            Some(focal_length_mm) => {
-                let f = number(focal_length_mm, of(keys::CAMERA_FOCAL_LENGTH));
-                fov_vertical_deg(f, camera.sensor_height_mm)
-            }
-        },
+        fov_vertical_deg,
         position_m: vector(&camera.position_m, of(keys::CAMERA_POSITION))
             + vector(&camera.position_offset_m, of(keys::CAMERA_POSITION_OFFSET)),
         rotation: rotation(&camera.rotation_deg, offset_deg, of(keys::CAMERA_ROTATION)),
         near_m: camera.near_m,
+        depth_of_field: depth_of_field(camera, fov_vertical_deg, draws.random_if(camera.enabled)),
         distortion: camera
             .distortion
             .as_ref()
             .map(|d| lens(d, draws.random_if(camera.enabled)))
             .filter(|lens| !lens.is_neutral()),
     }
+}
+
+fn depth_of_field(
+    camera: &document::Camera,
+    fov_vertical_deg: f64,
+    draws: Draws,
+) -> Option<DepthOfField> {
+    let blur = &camera.depth_of_field;
+    let of = |param, key| number(param, draws.of(key, 0));
+    blur.enabled.then(|| DepthOfField {
+        f_number: of(&blur.f_number, keys::F_NUMBER),
+        focus_distance_m: of(&blur.focus_distance_m, keys::FOCUS_DISTANCE),
+        focal_length_mm: match &blur.focal_length_mm {
+            Some(focal_length_mm) => of(focal_length_mm, keys::BLUR_FOCAL_LENGTH),
+            None => focal_length_mm(fov_vertical_deg, camera.sensor_height_mm),
+        },
+        sensor_height_mm: camera.sensor_height_mm,
+    })
 }
 
 fn lens(distortion: &Distortion, draws: Draws) -> Lens {
@@ -61,6 +81,11 @@ fn fov_vertical_deg(focal_length_mm: f64, sensor_height_mm: f64) -> f64 {
     2.0 * libm::atan2(0.5 * sensor_height_mm, focal_length_mm).to_degrees()
 }
 
+/// The focal length that makes an angle on a sensor, millimetres.
+fn focal_length_mm(fov_vertical_deg: f64, sensor_height_mm: f64) -> f64 {
+    0.5 * sensor_height_mm / libm::tan(0.5 * fov_vertical_deg.to_radians())
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -70,6 +95,8 @@ mod tests {
         for (focal_length_mm, expected_deg) in [(23.0, 55.1), (1.0, 170.5), (50.0, 27.0)] {
             let got_deg = fov_vertical_deg(focal_length_mm, 24.0);
             assert!((got_deg - expected_deg).abs() < 0.05, "{focal_length_mm} mm: {got_deg}");
+            let back_mm = super::focal_length_mm(got_deg, 24.0);
+            assert!((back_mm - focal_length_mm).abs() < 1e-9, "{back_mm}");
         }
     }
 }

@@ -166,6 +166,11 @@ keys! {
     TOP_RELIEF = "people.wardrobe.top.relief",
     BOTTOM_RELIEF = "people.wardrobe.bottom.relief",
     OUTER_RELIEF = "people.wardrobe.outer.relief",
+    BLOOM = "post.bloom",
+    BLOOM_SCATTER = "post.bloom_scatter",
+    F_NUMBER = "camera.depth_of_field.f_number",
+    FOCUS_DISTANCE = "camera.depth_of_field.focus_distance",
+    BLUR_FOCAL_LENGTH = "camera.depth_of_field.focal_length",
 }
 
 #[cfg(test)]

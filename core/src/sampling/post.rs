@@ -18,6 +18,8 @@ pub(super) fn post(post: &document::Post, draws: Draws) -> Post {
     }
     let of = |param, key| number(param, draws.of(key, 0));
     Post {
+        bloom: of(&post.bloom, keys::BLOOM),
+        bloom_scatter: of(&post.bloom_scatter, keys::BLOOM_SCATTER),
         vignette: of(&post.vignette, keys::VIGNETTE),
         shot_noise: of(&post.shot_noise, keys::SHOT_NOISE),
         read_noise: of(&post.read_noise, keys::READ_NOISE),

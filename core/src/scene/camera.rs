@@ -22,9 +22,39 @@ pub struct Camera {
     pub rotation: DQuat,
     /// Distance of the near plane along the view axis.
     pub near_m: f64,
+    /// How what is not in focus blurs; all is sharp where absent.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub depth_of_field: Option<DepthOfField>,
     /// What its lens makes of the pinhole's picture.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub distortion: Option<Lens>,
+}
+
+/// A thin lens with an aperture.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct DepthOfField {
+    /// Focal length over the width of the aperture.
+    pub f_number: f64,
+    /// Distance along the view axis of the plane that is sharp, metres.
+    pub focus_distance_m: f64,
+    /// Millimetres.
+    pub focal_length_mm: f64,
+    /// Height of the picture on the sensor, millimetres.
+    pub sensor_height_mm: f64,
+}
+
+impl DepthOfField {
+    /// Radius, in heights of the picture, of the disk that a point at infinity becomes: half of
+    /// `f^2 / (N (P - f))` on the sensor, P being the distance in focus. At a distance z it is
+    /// `|1 - P / z|` of this. A lens does not focus nearer than its focal length; there it is as if
+    /// the focus lay a micrometre beyond.
+    #[must_use]
+    pub fn blur_at_infinity(&self) -> f64 {
+        let f_m = self.focal_length_mm * 1e-3;
+        let aperture_m = f_m / self.f_number;
+        let beyond_m = (self.focus_distance_m - f_m).max(1e-6);
+        0.5 * aperture_m * f_m / beyond_m / (self.sensor_height_mm * 1e-3)
+    }
 }
 
 impl Camera {

@@ -5,6 +5,12 @@ use serde::{Deserialize, Serialize};
 /// Effects between exposure and file; all of them do nothing at 0.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Post {
+    /// 0..1: the lens scatters the share `2^bloom - 1` of the light.
+    #[serde(default)]
+    pub bloom: f64,
+    /// How far, 0..1; see [`crate::draw::abi::Bloom`].
+    #[serde(default)]
+    pub bloom_scatter: f64,
     /// 0..1: `1 - d.d` of the light is left at `d = 3 vignette |xy / size - 1/2|`, each axis at most 1.
     pub vignette: f64,
     /// Variance of the sensor's noise per unit of light, 1 being what fills it.

@@ -26,6 +26,9 @@ const AGX_OUTSET: [[f32; 3]; 3] = [
     [-0.052_971_635, -0.098_043_45, 1.151_073_7],
 ];
 
+/// No light is kept that is brighter, 1 being what fills the sensor.
+const BRIGHTEST: f32 = 1e4;
+
 /// What is done with exposed light.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Develop {
@@ -33,6 +36,8 @@ pub(super) struct Develop {
     noise: Option<SensorNoise>,
     color: Option<ColorGrade>,
     curve: ToneCurve,
+    /// Light is only kept, as [`compressed`] has it.
+    keeps: bool,
 }
 
 /// Darkening with the distance from the middle, whose axes are functions of the pixel.
@@ -73,7 +78,19 @@ impl Develop {
             noise: Self::is_noisy(grade).then_some(noise),
             color: grade.color,
             curve: grade.tone_curve,
+            keeps: false,
         }
+    }
+
+    /// Keeps the light of fragments, to be developed by the pixel once all of it is known.
+    pub(super) const fn keep() -> Self {
+        let curve = ToneCurve::None;
+        Self { vignette: None, noise: None, color: None, curve, keeps: true }
+    }
+
+    /// Whether pixels are developed later.
+    pub(super) const fn keeps(&self) -> bool {
+        self.keeps
     }
 
     /// Whether the sensor adds noise.
@@ -90,6 +107,9 @@ impl Develop {
         at: [F32x8<AVX2>; 2],
         unit: Vec3x8<AVX2>,
     ) -> Vec3x8<AVX2> {
+        if self.keeps {
+            return compressed(light);
+        }
         let light = match &self.vignette {
             Some(vignette) => light.scale(vignette.share(at)),
             None => light,
@@ -116,6 +136,16 @@ impl Develop {
             ),
         }
     }
+}
+
+/// Light over one more than its brightest channel, so that sums of it are smooth where one is much
+/// brighter than the others (Karis, "Tone mapping", 2013).
+#[inline(always)]
+pub(super) fn compressed<const AVX2: bool>(light: Vec3x8<AVX2>) -> Vec3x8<AVX2> {
+    let brightest = light.x.max(light.y).max(light.z).clamp(0.0, BRIGHTEST);
+    let factor = F32x8::ONE / (F32x8::ONE + brightest);
+    let within = |v: F32x8<AVX2>| v.clamp(0.0, BRIGHTEST) * factor;
+    Vec3x8::new(within(light.x), within(light.y), within(light.z))
 }
 
 impl Vignette {

@@ -5,7 +5,7 @@
 
 use super::samples::{Layout, TILE};
 use super::shade::TileColor;
-use super::simd::{F32x8, I32x8, LANES, kernel};
+use super::simd::{F32x8, I32x8, LANES, Vec3x8, kernel};
 use crate::engine::noise::{self, GRAIN_STD, mixed};
 
 /// Linear display light 0..1 to sRGB 0..1.
@@ -44,21 +44,39 @@ fn encode_body<const AVX2: bool>(
     for (from, bytes) in bytes.as_chunks_mut::<LANES>().0.iter_mut().enumerate() {
         let from = from * LANES;
         let noise = if noise.is_empty() { F32x8::ZERO } else { F32x8::load(&noise[from..]) };
-        let red = byte::<AVX2>(F32x8::load(&color[0][from..from + LANES]), noise);
-        let green = byte::<AVX2>(F32x8::load(&color[1][from..from + LANES]), noise);
-        let blue = byte::<AVX2>(F32x8::load(&color[2][from..from + LANES]), noise);
-        let pixels = red | (green << 8) | (blue << 16);
-        // Four bytes at a time; the fourth is overwritten by the next pixel's first.
-        let bytes = bytes.as_flattened_mut();
-        for (lane, pixel) in pixels.0[..LANES - 1].iter().enumerate() {
-            bytes[lane * 3..lane * 3 + 4].copy_from_slice(&pixel.to_le_bytes());
-        }
-        bytes[(LANES - 1) * 3..].copy_from_slice(&pixels.0[LANES - 1].to_le_bytes()[..3]);
+        let [r, g, b] = color.each_ref().map(|plane| F32x8::<AVX2>::load(&plane[from..]));
+        *bytes = self::bytes(Vec3x8::new(r, g, b), noise);
     }
 }
 
-/// Grain of each pixel slot of a tile, in 1/255: the sum of four bytes of a hash, which is normally
-/// distributed but for its tails, of the given standard deviation (a share of full scale).
+/// Eight pixels of linear display light as bytes, with noise in 1/255.
+#[inline(always)]
+pub(super) fn bytes<const AVX2: bool>(
+    color: Vec3x8<AVX2>,
+    noise: F32x8<AVX2>,
+) -> [[u8; 3]; LANES] {
+    let (red, green, blue) = (byte(color.x, noise), byte(color.y, noise), byte(color.z, noise));
+    let pixels = red | (green << 8) | (blue << 16);
+    let mut out = [[0; 3]; LANES];
+    // Four bytes at a time; the fourth is overwritten by the next pixel's first.
+    let bytes = out.as_flattened_mut();
+    for (lane, pixel) in pixels.0[..LANES - 1].iter().enumerate() {
+        bytes[lane * 3..lane * 3 + 4].copy_from_slice(&pixel.to_le_bytes());
+    }
+    bytes[(LANES - 1) * 3..].copy_from_slice(&pixels.0[LANES - 1].to_le_bytes()[..3]);
+    out
+}
+
+/// Grain of a pixel, in 1/255: the sum of four bytes of a hash, which is normally distributed but for
+/// its tails, of the given standard deviation (a share of full scale). The key is mixed.
+#[inline(always)]
+pub(super) fn grain_of_pixel(std: f32, key: u32, [x, y]: [u32; 2]) -> f32 {
+    let [a, b, c, d] = mixed(x.wrapping_add(mixed(y.wrapping_add(key)))).to_le_bytes();
+    let sum = i32::from(a) + i32::from(b) + i32::from(c) + i32::from(d) - 510;
+    sum as f32 * (std / GRAIN_STD * 255.0)
+}
+
+/// Grain of each pixel slot of a tile; see [`grain_of_pixel`].
 pub(super) fn grain<const S: usize>(
     std: f32,
     key: u32,
@@ -66,12 +84,8 @@ pub(super) fn grain<const S: usize>(
     out: &mut [f32; TILE * TILE],
 ) {
     let key = mixed(key);
-    let scale = std / GRAIN_STD * 255.0;
     for (out, xy) in out.iter_mut().zip(&Layout::<S>::SLOT_XY) {
-        let [x, y] = [0, 1].map(|axis| origin_px[axis] + u32::from(xy[axis]));
-        let [a, b, c, d] = mixed(x.wrapping_add(mixed(y.wrapping_add(key)))).to_le_bytes();
-        let sum = i32::from(a) + i32::from(b) + i32::from(c) + i32::from(d) - 510;
-        *out = sum as f32 * scale;
+        *out = grain_of_pixel(std, key, [0, 1].map(|axis| origin_px[axis] + u32::from(xy[axis])));
     }
 }
 

@@ -9,6 +9,7 @@
 //! | per tile (`tile`): visibility | `raster`, `lens_raster`, `samples` | -> object, triangle and depth of each sample |
 //! | per tile: shade | `fragment`, `shade`, `develop` | -> linear display light |
 //! | per tile: display | `display` | -> the 8-bit picture |
+//! | over the picture: depth of field, bloom, display | `optics` | light, where it is kept -> the 8-bit picture |
 //! | per tile: resolve, reduce | `resolve`, `reduce` | -> ids, distances, counts, extents |
 //!
 //! Picture and labels come from the same samples. A pass that the plan leaves out is not computed.
@@ -26,6 +27,7 @@ mod display;
 mod fragment;
 mod lens;
 mod lens_raster;
+mod optics;
 mod project;
 mod raster;
 mod reduce;
@@ -45,6 +47,7 @@ use rayon::prelude::*;
 use self::chunk::{Chunk, ChunkList};
 use self::develop::{Backdrop, Develop};
 use self::lens::Lens;
+use self::optics::{LightRow, Optics};
 use self::project::{Projection, ScreenVertex};
 use self::samples::TILE;
 use self::setup::Target;
@@ -95,6 +98,7 @@ struct Buffers {
     sun_screen: Vec<ScreenVertex>,
     shadow_map: ShadowMap,
     scratches: Mutex<Vec<Scratch>>,
+    optics: Optics,
     /// An earlier frame, for its memory.
     spare: Frame,
 }
@@ -307,14 +311,19 @@ impl Buffers {
             lens: self.lens.as_ref().filter(|_| list.lens.is_some()),
             chunks: self.visible.as_slice(),
             by_tile: self.visible.by_tile(),
-            shading: shades.then(|| shading(list, self.visible.as_slice(), &self.placed, shadow)),
+            shading: shades.then(|| {
+                let develop = if Optics::wanted(list, plan) { Develop::keep() } else { Develop::new(list) };
+                shading(list, self.visible.as_slice(), &self.placed, shadow, develop)
+            }),
             resolves,
             reduces,
         };
+        let keeps = Optics::wanted(list, plan);
+        let light = if keeps { self.optics.begin(list, plan) } else { Vec::new() };
         let scratches = &self.scratches;
         let used = Mutex::new(Vec::new());
         let lock = |pool: &Mutex<Vec<Scratch>>| pool.lock().map(|mut p| p.pop()).ok().flatten();
-        rows(frame).into_par_iter().enumerate().with_max_len(1).for_each(|(y, row)| {
+        rows(frame, light).into_par_iter().enumerate().with_max_len(1).for_each(|(y, row)| {
             // A scratch that has seen this frame, one of an earlier frame, or a new one.
             let mut scratch = lock(&used).unwrap_or_else(|| {
                 let mut scratch = lock(scratches).unwrap_or_default();
@@ -328,6 +337,9 @@ impl Buffers {
         used.iter().for_each(|scratch| scratch.report(times));
         if let Some(raster_time) = raster_time {
             times.move_part("shade", "shadow raster", raster_time());
+        }
+        if let Some(picture) = frame.picture.as_deref_mut().filter(|_| keeps) {
+            self.optics.finish(level, list, plan, picture, times);
         }
         frame.object_samples = reduces.then(|| {
             let mut sums = vec![ObjectSamples::default(); list.objects.len()];
@@ -375,6 +387,7 @@ fn shading<'a>(
     chunks: &'a [Chunk],
     placed: &'a skin::Placed,
     shadow: Option<SunShadow<'a>>,
+    develop: Develop,
 ) -> Shading<'a> {
     let view = &list.view;
     Shading {
@@ -382,7 +395,7 @@ fn shading<'a>(
             geometry: Geometry { chunks, vertices: &placed.vertices },
             rays: Rays::new(view),
             lighting: Lighting::new(list, shadow),
-            develop: Develop::new(list),
+            develop,
         },
         surfaces: list.materials.iter().map(|m| Surface::new(m, list)).collect(),
         backdrop: Backdrop(list.lights.background_nits.map(|nits| nits * list.exposure)),
@@ -390,17 +403,19 @@ fn shading<'a>(
 }
 
 /// Divides a frame's buffers into rows of tiles.
-fn rows(frame: &mut Frame) -> Vec<Row<'_>> {
+fn rows<'a>(frame: &'a mut Frame, light: Vec<LightRow<'a>>) -> Vec<Row<'a>> {
     let line = frame.width as usize * TILE;
     let count = (frame.height as usize).div_ceil(TILE);
     let mut picture = frame.picture.as_deref_mut().unwrap_or_default().chunks_mut(line * 3);
     let mut object_ids = frame.object_ids.as_deref_mut().unwrap_or_default().chunks_mut(line);
     let mut depth_m = frame.depth_m.as_deref_mut().unwrap_or_default().chunks_mut(line);
+    let mut light = light.into_iter();
     (0..count)
         .map(|_| Row {
             picture: picture.next().unwrap_or_default(),
             object_ids: object_ids.next().unwrap_or_default(),
             depth_m: depth_m.next().unwrap_or_default(),
+            light: light.next().unwrap_or_default(),
         })
         .collect()
 }

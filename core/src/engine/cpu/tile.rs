@@ -10,6 +10,7 @@ use super::chunk::{Chunk, NOTHING};
 use super::fragment::{Fragments, Visible, gather};
 use super::lens::{Lens, LensTile};
 use super::lens_raster::raster_lens_tile;
+use super::optics::LightRow;
 use super::raster::raster_tile;
 use super::reduce;
 use super::resolve::{Resolved, SampleObjects, objects_of_samples, resolve};
@@ -134,6 +135,7 @@ pub(super) struct Row<'a> {
     pub(super) picture: &'a mut [u8],
     pub(super) object_ids: &'a mut [u16],
     pub(super) depth_m: &'a mut [f32],
+    pub(super) light: LightRow<'a>,
 }
 
 impl TilePass<'_> {
@@ -160,6 +162,11 @@ impl TilePass<'_> {
             self.shade::<S>(shading, origin_px, lens, scratch);
             let grade = &self.list.grade;
             scratch.measure(Step::Display, |s| {
+                if shading.stage.develop.keeps() {
+                    let place = (tile, size);
+                    row.light.take::<S>(self.level, self.list, place, &s.depth, &mut s.color);
+                    return;
+                }
                 let grainy = grade.grain > 0.0;
                 if grainy {
                     display::grain::<S>(grade.grain, grade.grain_key, origin_px, &mut s.noise);
@@ -220,7 +227,7 @@ impl TilePass<'_> {
         scratch: &mut Scratch,
     ) {
         let (view, grade) = (&self.list.view, &self.list.grade);
-        let noisy = develop::Develop::is_noisy(grade);
+        let noisy = develop::Develop::is_noisy(grade) && !shading.stage.develop.keeps();
         if noisy {
             scratch.measure(Step::Display, |s| {
                 display::sensor_noise::<S>(grade.grain_key, origin_px, &mut s.sensor);
@@ -324,7 +331,7 @@ fn clear_outside<const S: usize>(size: [usize; 2], depth: &mut [f32], ids: &mut 
 }
 
 /// Copies the pixel slots of a tile to their places in a row of tiles.
-fn copy_out<const S: usize, T: Copy, const N: usize>(
+pub(super) fn copy_out<const S: usize, T: Copy, const N: usize>(
     tile: [u32; 2],
     size: [usize; 2],
     width: u32,

@@ -40,6 +40,14 @@ pub struct Frame {
     pub environment_unit: f32,
     pub blocker_count: u32,
     pub sensor_key: u32,
+    pub focus_m: f32,
+    pub blur_px: f32,
+    pub blur_limit_px: f32,
+    pub blur_halvings: u32,
+    pub bloom_share: f32,
+    pub bloom_spread: f32,
+    pub pad5: u32,
+    pub pad6: u32,
     pub environment_from_view: [[f32; 4]; 3],
     pub environment_levels: [[u32; 4]; 3],
     pub environment_irradiance: [[f32; 4]; 10],
@@ -207,6 +215,18 @@ pub struct Light {
     pub per_radius_m: f32,
 }
 
+/// Two levels of scattered light.
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+#[repr(C)]
+pub struct Step {
+    pub larger_first: u32,
+    pub smaller_first: u32,
+    pub larger_size: [u32; 2],
+    pub smaller_size: [u32; 2],
+    pub pad0: u32,
+    pub pad1: u32,
+}
+
 /// Count and extent of an object's samples.
 #[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
 #[repr(C)]
@@ -216,6 +236,12 @@ pub struct ObjectSums {
     pub high: [u32; 2],
 }
 
+/// [`Step::larger_first`] of the light of pixels.
+pub const LIGHT_OF_PIXELS: u32 = u32::MAX;
+/// Side of the squares of texels that know their widest disk.
+pub const SQUARE: u32 = 16;
+/// Words of a texel of the layers of depth of field.
+pub const LAYER_WORDS: u32 = 5;
 /// Words of a vertex in the mesh pool.
 pub const VERTEX_WORDS: u32 = 8;
 /// Vertices of a [`VertexBatch`].

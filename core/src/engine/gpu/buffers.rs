@@ -137,6 +137,13 @@ const fn name(resource: Resource) -> &'static str {
         Resource::Samples => "graphics memory of samples",
         Resource::ShadowMap | Resource::SunView => "graphics memory of the shadow map",
         Resource::Picture | Resource::Resolved => "graphics memory of the picture",
+        Resource::Light
+        | Resource::Layers
+        | Resource::Widest
+        | Resource::Gathered
+        | Resource::Scattered
+        | Resource::Steps
+        | Resource::Step => "graphics memory of light that spreads over the picture",
         Resource::Squares | Resource::Places | Resource::Rays => "graphics memory of the lens",
     }
 }

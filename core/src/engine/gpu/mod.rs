@@ -7,6 +7,9 @@
 //! | shadow | `bound`, `fit`, `project`, `sun_setup`, `clip`, `shadow` | -> the sun's depth map |
 //! | visibility | `raster` | -> triangle and depth of each sample; behind a lens by the tables of `lens` |
 //! | shade, display | `shade` | -> the 8-bit picture |
+//! | depth of field | `split`, `gather`, `compose` | light, where it is kept -> light |
+//! | bloom | `halve`, `widen` | light -> scattered light |
+//! | display | `finish` | both -> the 8-bit picture |
 //! | resolve, reduce | `resolve`, `reduce` | -> ids, distances, counts, extents |
 //!
 //! Everything is computed, nothing drawn by fixed hardware: snapping, tie rules, sample positions
@@ -34,6 +37,7 @@ mod adapter;
 mod buffers;
 mod device;
 mod lens;
+mod optics;
 mod pack;
 mod pool;
 mod present;
@@ -62,13 +66,14 @@ use self::present::Presenter;
 use self::readback::{Band, Counted, Readback};
 use self::record::{Clock, Recorder};
 use self::stage::{Resource, Stage};
+use self::optics::Optics;
 use self::variant::{Light, Variant};
 use super::{Engine, EngineError, input, resized};
 use crate::draw::DrawList;
 use crate::draw::abi::MAX_BLOCKERS;
 use crate::library::mesh::Mesh;
 use crate::library::texture::Texture;
-use crate::plan::{Delivery, Frame, ObjectSamples, Pass, PassPlan, StageTimes};
+use crate::plan::{Delivery, Frame, ObjectSamples, Pass, PassPlan, Skipped, StageTimes};
 
 /// How often a frame is tried anew with more room for triangles: what is needed is known after
 /// the first try, but for the sun's map, of which it is known after the second.
@@ -159,6 +164,7 @@ struct State {
     meshes: Pool<Mesh>,
     textures: Pool<[u32]>,
     packed: Packed,
+    optics: Optics,
     /// That of the last frame that had one.
     lens: Option<Lens>,
     /// Whether the device holds the tables of its last band.
@@ -209,6 +215,7 @@ impl State {
             meshes: Pool::new("graphics memory of meshes"),
             textures: Pool::new("graphics memory of textures"),
             packed: Packed::default(),
+            optics: Optics::default(),
             lens: None,
             lens_is_there: false,
             readback: Readback::default(),
@@ -407,23 +414,21 @@ impl State {
         times: &mut StageTimes,
     ) -> Result<bool, EngineError> {
         let rows = self.band_rows(list)?;
-        self.make_room(list, rows)?;
+        let keeps = Optics::wanted(list, plan);
+        self.make_room(list, rows, keeps)?;
+        self.optics.make_room(&self.device, &mut self.buffers, list, plan)?;
+        // Pictures of light that is kept are made once all of it is there.
+        let of_bands = &if keeps {
+            plan.clone().without(Pass::Display, Skipped::NotWanted)
+        } else {
+            plan.clone()
+        };
         for first_y in (0..list.view.height).step_by(rows as usize) {
             let rows = rows.min(list.view.height - first_y);
             let band = Band { first_y, rows, last: first_y + rows == list.view.height };
             times.measure("lens", || self.bring_lens(list, band))?;
-            times.measure("submit", || self.submit(list, plan, shadow, band))?;
-            let start = Instant::now();
-            self.readback.wait(&self.device)?;
-            let waited = start.elapsed();
-            let mut ticks = [0; 2 * Stage::ALL.len()];
-            let counted = times.measure("copy back", || {
-                self.readback.take(&self.device, band, frame, &mut ticks)
-            })?;
-            match &self.clock {
-                Some(clock) => clock.report(&ticks, waited, times),
-                None => times.add("wait for the device", waited),
-            }
+            times.measure("submit", || self.submit(list, of_bands, shadow, band))?;
+            let counted = self.take_back(band, frame, times)?;
             if counted[0].bad_object != 0 {
                 let object = u32::MAX - counted[0].bad_object;
                 return Err(EngineError::NotFinite { object, what: "a placed vertex" });
@@ -432,7 +437,33 @@ impl State {
                 return Ok(false);
             }
         }
+        if keeps {
+            let band = Band { first_y: 0, rows: list.view.height, last: true };
+            times.measure("submit", || self.submit_optics(list, plan, band))?;
+            self.take_back(band, frame, times)?;
+        }
         Ok(true)
+    }
+
+    /// Waits for what was submitted and copies back what was recorded of it.
+    fn take_back(
+        &mut self,
+        band: Band,
+        frame: &mut Frame,
+        times: &mut StageTimes,
+    ) -> Result<Counted, EngineError> {
+        let start = Instant::now();
+        self.readback.wait(&self.device)?;
+        let waited = start.elapsed();
+        let mut ticks = [0; 2 * Stage::ALL.len()];
+        let counted = times.measure("copy back", || {
+            self.readback.take(&self.device, band, frame, &mut ticks)
+        })?;
+        match &self.clock {
+            Some(clock) => clock.report(&ticks, waited, times),
+            None => times.add("wait for the device", waited),
+        }
+        Ok(counted)
     }
 
     /// Rows of pixels of a band, a multiple of the tile's, such that everything by pixel fits.
@@ -458,7 +489,7 @@ impl State {
     }
 
     /// Makes room for what depends on the size of the picture and the number of triangles.
-    fn make_room(&mut self, list: &DrawList, rows: u32) -> Result<(), EngineError> {
+    fn make_room(&mut self, list: &DrawList, rows: u32, keeps: bool) -> Result<(), EngineError> {
         let (device, buffers) = (&self.device, &mut self.buffers);
         let width = u64::from(list.view.width);
         let rows = u64::from(rows.min(list.view.height));
@@ -468,7 +499,8 @@ impl State {
         buffers.ensure(device, Resource::SunPrimitives, sun * primitive)?;
         buffers.ensure(device, Resource::Lists, self.room.entries * 4)?;
         buffers.ensure(device, Resource::Samples, width * rows * u64::from(list.samples) * 8)?;
-        buffers.ensure(device, Resource::Picture, width * rows * 4)?;
+        let pixels = width * if keeps { u64::from(list.view.height) } else { rows };
+        buffers.ensure(device, Resource::Picture, pixels * 4)?;
         buffers.ensure(device, Resource::Resolved, width * rows * 8)?;
         let tile = u64::from(abi::TILE);
         let tiles = width.div_ceil(tile) * rows.div_ceil(tile);
@@ -498,6 +530,43 @@ impl State {
         shadow: bool,
         band: Band,
     ) -> Result<(), EngineError> {
+        self.record(list, plan, band, |recorder, packed| {
+            if band.first_y == 0 {
+                recorder.geometry();
+                if shadow {
+                    recorder.shadow(packed.sun_batches.len() as u32);
+                }
+            }
+            recorder.visibility();
+            recorder.outputs(plan);
+        })
+    }
+
+    /// Records what follows all bands where light is kept, and sends it off.
+    fn submit_optics(
+        &mut self,
+        list: &DrawList,
+        plan: &PassPlan,
+        picture: Band,
+    ) -> Result<(), EngineError> {
+        let labels = [Pass::Resolve, Pass::Reduce];
+        let plan = labels.into_iter().fold(plan.clone(), |p, l| p.without(l, Skipped::NotWanted));
+        let steps = std::mem::take(&mut self.optics.steps);
+        let result = self.record(list, &plan, picture, |recorder, packed| {
+            recorder.optics(&plan, &packed.frame, &steps);
+        });
+        self.optics.steps = steps;
+        result
+    }
+
+    /// Records passes over a band and what becomes of them, and sends it all off.
+    fn record(
+        &mut self,
+        list: &DrawList,
+        plan: &PassPlan,
+        band: Band,
+        passes: impl FnOnce(&mut Recorder<'_>, &Packed),
+    ) -> Result<(), EngineError> {
         let mut target = pack::picture_target(list, &self.packed, band.first_y, band.rows);
         if let Some(lens) = self.lens.as_ref().filter(|_| list.lens.is_some()) {
             // Samples behind a lens stand in its plane.
@@ -517,21 +586,14 @@ impl State {
             },
             lens: list.lens.is_some(),
             target: &target,
+            keeps: !plan.runs(Pass::Display),
             triangles: self.packed.triangles[0],
         };
         recorder.start();
-        if band.first_y == 0 {
-            recorder.geometry();
-            if shadow {
-                recorder.shadow(self.packed.sun_batches.len() as u32);
-            }
-        }
-        recorder.visibility();
-        recorder.outputs(plan);
+        passes(&mut recorder, &self.packed);
         recorder.finish();
-        if let Some(present) =
-            self.present.as_ref().filter(|_| plan.delivery() == Delivery::Texture)
-        {
+        let shown = plan.runs(Pass::Display) && plan.delivery() == Delivery::Texture;
+        if let Some(present) = self.present.as_ref().filter(|_| shown) {
             present.record(&self.device, &mut encoder, &self.buffers, band.rows);
         }
         let timings = self.clock.as_ref().map(|c| &c.resolved);

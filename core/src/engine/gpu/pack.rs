@@ -9,7 +9,7 @@ use super::abi::{
 };
 use crate::draw::DrawList;
 use crate::draw::abi::{Grade, Material, ToneCurve, View};
-use crate::engine::{noise, pattern};
+use crate::engine::{noise, optics, pattern};
 use crate::library::mesh::{Cutout, Mesh};
 use crate::library::texture::{Encoding, Texture};
 
@@ -276,6 +276,15 @@ fn frame(list: &DrawList, shadow: bool) -> Frame {
         frame.sun_axes = sun_axes(sun.direction_to_sun).map(|[x, y, z]| [x, y, z, 0.0]);
     }
     add_grade(&mut frame, &list.grade);
+    if let Some(defocus) = &list.defocus {
+        frame.focus_m = defocus.focus_m;
+        frame.blur_px = defocus.at_infinity_px;
+        frame.blur_limit_px = defocus.largest_px;
+        frame.blur_halvings = optics::blur_level(defocus);
+    }
+    if let Some(bloom) = list.grade.bloom {
+        (frame.bloom_share, frame.bloom_spread) = (bloom.share, bloom.spread);
+    }
     frame
 }
 

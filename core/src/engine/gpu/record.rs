@@ -2,11 +2,12 @@
 
 use std::time::Duration;
 
-use super::abi::{BATCHES_ACROSS, SunView, TILE, Target};
+use super::abi::{BATCHES_ACROSS, Frame, Step, SunView, TILE, Target};
 use super::buffers::Buffers;
 use super::device::Device;
 use super::stage::{Resource, Stage};
 use super::variant::{Variant, pixels_of_lane};
+use crate::engine::optics::level_size;
 use crate::plan::{Pass, PassPlan, StageTimes};
 
 /// What the device's clock says at the start and end of each stage.
@@ -61,6 +62,8 @@ pub struct Recorder<'a> {
     /// Whether the picture lies behind a lens.
     pub lens: bool,
     pub target: &'a Target,
+    /// Whether light is kept, to be developed by the pixel.
+    pub keeps: bool,
     /// Triangles of the picture before culling.
     pub triangles: u32,
 }
@@ -72,6 +75,9 @@ type Groups = [u32; 3];
 const CLIPPERS: Groups = [16, 1, 1];
 /// Workgroups that share the larger triangles of the sun's map.
 const SHADOW_GROUPS: Groups = [256, 1, 1];
+
+/// Side of the workgroups that look at whole pictures.
+const SIDE: u32 = 8;
 
 /// Pixels of a strip of `reduce.wgsl`, times the strips of a workgroup.
 const REDUCE_WIDTH: u32 = 64;
@@ -144,9 +150,39 @@ impl Recorder<'_> {
             let strips = [width.div_ceil(REDUCE_WIDTH), band_height.div_ceil(REDUCE_ROWS), 1];
             self.run(Stage::Reduce, strips);
         }
-        if plan.runs(Pass::Display) {
-            self.run(Stage::Shade, tiles);
+        if plan.runs(Pass::Shade) {
+            self.run(if self.keeps { Stage::KeepLight } else { Stage::Shade }, tiles);
         }
+    }
+
+    /// Makes the picture of the light that all bands left.
+    pub fn optics(&mut self, plan: &PassPlan, frame: &Frame, steps: &[Step]) {
+        let squares = |[w, h]: [u32; 2]| [w.div_ceil(SIDE), h.div_ceil(SIDE), 1];
+        if plan.runs(Pass::Defocus) && frame.blur_limit_px > 0.0 {
+            let layers = squares(level_size(frame.size, frame.blur_halvings));
+            self.encoder.clear_buffer(self.buffers.get(Resource::Widest), 0, None);
+            self.run(Stage::Split, layers);
+            self.run(Stage::Gather, layers);
+            self.run(Stage::Compose, squares(frame.size));
+        }
+        if plan.runs(Pass::Bloom) {
+            for (index, step) in steps.iter().enumerate() {
+                self.take_step(index);
+                self.run(Stage::Halve, squares(step.smaller_size));
+            }
+            for (index, step) in steps.iter().enumerate().skip(1).rev() {
+                self.take_step(index);
+                self.run(Stage::Widen, squares(step.larger_size));
+            }
+        }
+        self.run(Stage::Finish, squares(frame.size));
+    }
+
+    /// Puts a step between levels in hand.
+    fn take_step(&mut self, index: usize) {
+        let [steps, step] = [Resource::Steps, Resource::Step].map(|r| self.buffers.get(r));
+        let bytes = size_of::<Step>() as u64;
+        self.encoder.copy_buffer_to_buffer(steps, index as u64 * bytes, step, 0, Some(bytes));
     }
 
     fn run(&mut self, stage: Stage, groups: Groups) {

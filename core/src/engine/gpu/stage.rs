@@ -56,6 +56,16 @@ pub enum Resource {
     Picture,
     Resolved,
     Sums,
+    /// The light of pixels where it is kept: of the whole picture.
+    Light,
+    /// Depth of field: what lies before the focus and beyond, the widest disks, what disks bring.
+    Layers,
+    Widest,
+    Gathered,
+    /// Levels of scattered light; all [`super::abi::Step`]s between them, and the one in hand.
+    Scattered,
+    Steps,
+    Step,
     /// See `shared/lens_tiles.wgsl`.
     Squares,
     /// Where the band's samples lie behind a lens, and rays through its pixels.
@@ -97,16 +107,25 @@ pub enum Stage {
     Resolve,
     Reduce,
     Shade,
+    /// In place of `Shade` where light is kept.
+    KeepLight,
+    Split,
+    Gather,
+    Compose,
+    Halve,
+    Widen,
+    Finish,
     /// Behind a lens.
     LensCount,
     LensScatter,
     LensRaster,
     LensShade,
+    LensKeepLight,
 }
 
 impl Stage {
     /// All stages in the order in which a frame runs them.
-    pub const ALL: [Self; 20] = [
+    pub const ALL: [Self; 28] = [
         Self::Skin,
         Self::Setup,
         Self::Clip,
@@ -123,10 +142,18 @@ impl Stage {
         Self::Resolve,
         Self::Reduce,
         Self::Shade,
+        Self::KeepLight,
+        Self::Split,
+        Self::Gather,
+        Self::Compose,
+        Self::Halve,
+        Self::Widen,
+        Self::Finish,
         Self::LensCount,
         Self::LensScatter,
         Self::LensRaster,
         Self::LensShade,
+        Self::LensKeepLight,
     ];
 
     /// What runs in its place behind a lens.
@@ -136,6 +163,7 @@ impl Stage {
             Self::Scatter => Self::LensScatter,
             Self::Raster => Self::LensRaster,
             Self::Shade => Self::LensShade,
+            Self::KeepLight => Self::LensKeepLight,
             other => other,
         }
     }
@@ -152,7 +180,10 @@ impl Stage {
             Self::Raster | Self::LensRaster => "raster",
             Self::Resolve => "resolve",
             Self::Reduce => "reduce",
-            Self::Shade | Self::LensShade => "shade",
+            Self::Shade | Self::KeepLight | Self::LensShade | Self::LensKeepLight => "shade",
+            Self::Split | Self::Gather | Self::Compose => "depth of field",
+            Self::Halve | Self::Widen => "bloom",
+            Self::Finish => "display",
         }
     }
 
@@ -173,8 +204,10 @@ impl Stage {
                 | Self::Resolve
                 | Self::Reduce
                 | Self::Shade
+                | Self::KeepLight
                 | Self::LensRaster
                 | Self::LensShade
+                | Self::LensKeepLight
         )
     }
 
@@ -352,6 +385,49 @@ impl Stage {
                 (R::Blockers, Uniform),
                 (R::Rays, Read),
             ],
+            Self::KeepLight => &[
+                (R::Frame, Uniform),
+                (R::Target, Uniform),
+                (R::Primitives, Read),
+                (R::Surfaces, Read),
+                (R::Vertices, Read),
+                (R::Samples, Read),
+                (R::Texels, Read),
+                (R::Lights, Uniform),
+                (R::SunView, Uniform),
+                (R::ShadowMap, Read),
+                (R::Light, Write),
+                (R::Blockers, Uniform),
+            ],
+            Self::LensKeepLight => &[
+                (R::Frame, Uniform),
+                (R::Target, Uniform),
+                (R::Primitives, Read),
+                (R::Surfaces, Read),
+                (R::Vertices, Read),
+                (R::Samples, Read),
+                (R::Texels, Read),
+                (R::Lights, Uniform),
+                (R::SunView, Uniform),
+                (R::ShadowMap, Read),
+                (R::Light, Write),
+                (R::Blockers, Uniform),
+                (R::Rays, Read),
+            ],
+            Self::Split => {
+                &[(R::Frame, Uniform), (R::Light, Read), (R::Layers, Write), (R::Widest, Write)]
+            }
+            Self::Gather => {
+                &[(R::Frame, Uniform), (R::Layers, Read), (R::Widest, Read), (R::Gathered, Write)]
+            }
+            Self::Compose => &[(R::Frame, Uniform), (R::Gathered, Read), (R::Light, Write)],
+            Self::Halve => {
+                &[(R::Frame, Uniform), (R::Step, Uniform), (R::Light, Read), (R::Scattered, Write)]
+            }
+            Self::Widen => &[(R::Frame, Uniform), (R::Step, Uniform), (R::Scattered, Write)],
+            Self::Finish => {
+                &[(R::Frame, Uniform), (R::Light, Read), (R::Scattered, Read), (R::Picture, Write)]
+            }
         }
     }
 
@@ -413,7 +489,20 @@ impl Stage {
             Self::Shadow => &[ABI, WIDE, EDGE, file!("shadow.wgsl")],
             Self::Resolve => &[ABI, file!("resolve.wgsl")],
             Self::Reduce => &[ABI, file!("reduce.wgsl")],
-            Self::Shade => &[
+            Self::Split => &[ABI, LIGHT_OF_PIXELS, DISK, file!("split.wgsl")],
+            Self::Gather => &[ABI, DISK, file!("gather.wgsl")],
+            Self::Compose => &[ABI, LIGHT_OF_PIXELS, DISK, file!("compose.wgsl")],
+            Self::Halve => &[ABI, LIGHT_OF_PIXELS, file!("halve.wgsl")],
+            Self::Widen => &[ABI, LIGHT_OF_PIXELS, DRAWN_OUT, file!("widen.wgsl")],
+            Self::Finish => &[
+                ABI,
+                LIGHT_OF_PIXELS,
+                DRAWN_OUT,
+                file!("shared/develop.wgsl"),
+                file!("shared/display.wgsl"),
+                file!("finish.wgsl"),
+            ],
+            Self::Shade | Self::KeepLight => &[
                 ABI,
                 file!("shared/texture.wgsl"),
                 file!("shared/ray.wgsl"),
@@ -426,9 +515,10 @@ impl Stage {
                 file!("shared/light.wgsl"),
                 file!("shared/develop.wgsl"),
                 file!("shared/display.wgsl"),
+                LIGHT_OF_PIXELS,
                 file!("shade.wgsl"),
             ],
-            Self::LensShade => &[
+            Self::LensShade | Self::LensKeepLight => &[
                 ABI,
                 file!("shared/texture.wgsl"),
                 file!("shared/lens_ray.wgsl"),
@@ -441,6 +531,7 @@ impl Stage {
                 file!("shared/light.wgsl"),
                 file!("shared/develop.wgsl"),
                 file!("shared/display.wgsl"),
+                LIGHT_OF_PIXELS,
                 file!("shade.wgsl"),
             ],
         }
@@ -457,6 +548,9 @@ const NORMAL: File = file!("shared/normal.wgsl");
 const PROJECT: File = file!("shared/project.wgsl");
 const BOUNDS: File = file!("shared/bounds.wgsl");
 const TRIANGLE: File = file!("shared/triangle.wgsl");
+const LIGHT_OF_PIXELS: File = file!("shared/light_of_pixels.wgsl");
+const DISK: File = file!("shared/disk.wgsl");
+const DRAWN_OUT: File = file!("shared/drawn_out.wgsl");
 const EDGE: File = file!("shared/edge.wgsl");
 const KEPT: File = file!("shared/kept.wgsl");
 const CUTOUT: File = file!("shared/cutout.wgsl");

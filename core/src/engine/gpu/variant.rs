@@ -41,6 +41,8 @@ pub struct Light {
     noise: bool,
     /// Which tone curve.
     tone_curve: u32,
+    /// Light is kept, to be developed by the pixel.
+    keeps: bool,
     /// Lamps that the shader counts on, one after the other without a loop: a multiple of four.
     known_lamps: u32,
 }
@@ -55,7 +57,25 @@ impl Light {
             shadow: frame.has_shadow != 0,
             noise: frame.shot_noise > 0.0 || frame.read_variance > 0.0,
             tone_curve: frame.tone_curve,
+            keeps: false,
             known_lamps: frame.light_count.next_multiple_of(4).min(KNOWN_LAMPS),
+        }
+    }
+}
+
+impl Light {
+    /// What of it makes a difference to a stage.
+    fn of_stage(self, stage: Stage) -> Self {
+        match stage {
+            Stage::Shade | Stage::LensShade => self,
+            Stage::KeepLight | Stage::LensKeepLight => {
+                Self { noise: false, tone_curve: 0, keeps: true, ..self }
+            }
+            Stage::Finish => {
+                let Self { noise, tone_curve, .. } = self;
+                Self { noise, tone_curve, ..Self::default() }
+            }
+            _ => Self::default(),
         }
     }
 }
@@ -63,10 +83,9 @@ impl Light {
 impl Variant {
     /// Without what makes no difference to a stage.
     pub fn of(self, stage: Stage) -> Self {
-        let shades = matches!(stage, Stage::Shade | Stage::LensShade);
         Self {
             samples: if stage.by_samples() { self.samples } else { 1 },
-            light: if shades { self.light } else { Light::default() },
+            light: self.light.of_stage(stage),
             cutouts: self.cutouts && matches!(stage, Stage::Raster | Stage::LensRaster),
         }
     }
@@ -79,7 +98,8 @@ impl Variant {
             let all = k % 2 == 1;
             let [environment, blockers, sun, shadow, noise] = [all; 5];
             let known_lamps = if all { KNOWN_LAMPS } else { 0 };
-            Light { environment, blockers, sun, shadow, noise, tone_curve: k / 2, known_lamps }
+            let (keeps, tone_curve) = (false, k / 2);
+            Light { environment, blockers, sun, shadow, noise, tone_curve, keeps, known_lamps }
         });
         let every = lights.flat_map(|light| {
             SAMPLES.map(|n| [(n, light, false), (n, light, true)]).into_iter().flatten()
@@ -100,7 +120,8 @@ impl Variant {
         // With one sample a pixel, positions are whole pixels from its middle, else sixteenths.
         let (grid_log2, corner) = if samples == 1 { (10, 8) } else { (6, 0) };
         let pixels = pixels_of_lane(samples);
-        let Light { environment, blockers, sun, shadow, noise, tone_curve, known_lamps } = light;
+        let Light { environment, blockers, sun, shadow, noise, tone_curve, keeps, known_lamps } =
+            light;
         format!(
             "const SAMPLES: u32 = {samples}u;\n\
              const POSITIONS = array<vec2<i32>, {samples}>({});\n\
@@ -114,6 +135,7 @@ impl Variant {
              const HAS_SHADOW: bool = {shadow};\n\
              const HAS_NOISE: bool = {noise};\n\
              const HAS_CUTOUTS: bool = {cutouts};\n\
+             const KEEPS_LIGHT: bool = {keeps};\n\
              const TONE_CURVE: u32 = {tone_curve}u;\n\
              const KNOWN_LAMPS: u32 = {known_lamps}u;\n",
             positions.join(", "),

@@ -108,6 +108,14 @@ fn shared_structs_are_laid_out_alike() {
             environment_unit,
             blocker_count,
             sensor_key,
+            focus_m,
+            blur_px,
+            blur_limit_px,
+            blur_halvings,
+            bloom_share,
+            bloom_spread,
+            pad5,
+            pad6,
             environment_from_view,
             environment_levels,
             environment_irradiance,
@@ -160,6 +168,14 @@ fn shared_structs_are_laid_out_alike() {
         }),
         layout!(Blocker { center, radius_m }),
         layout!(Light { position, per_range_m2, color_cd, per_radius_m }),
+        layout!(Step {
+            larger_first,
+            smaller_first,
+            larger_size,
+            smaller_size,
+            pad0,
+            pad1,
+        }),
         layout!(ObjectSums { count, low, high }),
     ];
     let shared = module.types.iter().filter_map(|(handle, t)| match &t.inner {
@@ -203,6 +219,12 @@ fn shared_constants_are_the_same() {
     {
         assert!(texture.contains(&format!("const {name}{value}u;")), "{name}");
     }
+    let disk = include_str!("../../../../../shaders/shared/disk.wgsl");
+    assert!(disk.contains(&format!("const SQUARE: u32 = {}u;", abi::SQUARE)));
+    let split = include_str!("../../../../../shaders/split.wgsl");
+    assert!(split.contains(&format!("array<array<u32, {}>>", abi::LAYER_WORDS)));
+    assert_eq!(abi::LIGHT_OF_PIXELS, u32::MAX);
+    assert!(text.contains("const NOTHING: u32 = 0xffffffffu;"));
     let skin = include_str!("../../../../../shaders/skin.wgsl");
     assert!(skin.contains(&format!("const VERTEX_WORDS: u32 = {}u;", abi::VERTEX_WORDS)));
     let header = size_of::<abi::SunView>() / 4;

@@ -1,0 +1,53 @@
+//! What both engines know of light that leaves its pixel: at which size it is spread.
+
+use crate::draw::abi::Defocus;
+
+/// Largest radius over which light out of focus is gathered, texels.
+const MOST_TEXELS: f32 = 5.0;
+/// Levels of the pyramid of scattered light at most.
+const MOST_LEVELS: usize = 12;
+/// Texels of the larger side that a level has at least.
+const LEAST_SIDE: u32 = 4;
+
+/// How often the picture is halved before light out of focus is gathered, so that no disk is wider
+/// than what is looked at.
+pub(super) fn blur_level(defocus: &Defocus) -> u32 {
+    (0..16).find(|l| defocus.largest_px <= MOST_TEXELS * (1 << l) as f32).unwrap_or(16)
+}
+
+/// Texels of a level of a picture; what does not fill a texel has one as well.
+pub(super) const fn level_size([width, height]: [u32; 2], level: u32) -> [u32; 2] {
+    [width.div_ceil(1 << level), height.div_ceil(1 << level)]
+}
+
+/// Sizes of the levels of scattered light, from half the picture's on.
+pub(super) fn bloom_levels(size: [u32; 2]) -> Vec<[u32; 2]> {
+    let halved = |[w, h]: &[u32; 2]| Some([w.div_ceil(2), h.div_ceil(2)]);
+    let levels = std::iter::successors(halved(&size), halved).take(MOST_LEVELS);
+    let large = |size: &[u32; 2]| size[0].max(size[1]) >= LEAST_SIDE;
+    let (first, rest) = (halved(&size), levels.skip(1).take_while(large));
+    first.into_iter().chain(rest).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn disks_fit_what_is_looked_at() {
+        for (largest_px, level) in [(0.6, 0), (5.0, 0), (5.1, 1), (32.0, 3), (400.0, 7)] {
+            let defocus = Defocus { focus_m: 1.0, at_infinity_px: largest_px, largest_px };
+            assert_eq!(blur_level(&defocus), level, "{largest_px}");
+        }
+    }
+
+    #[test]
+    fn levels_halve_down_to_a_few_texels() {
+        let sizes = bloom_levels([640, 480]);
+        assert_eq!(sizes[0], [320, 240]);
+        assert_eq!(sizes.last(), Some(&[5, 4]));
+        assert_eq!(bloom_levels([1, 1]), [[1, 1]]);
+        assert_eq!(bloom_levels([8192, 1]).len(), 11);
+        assert_eq!(level_size([13, 8], 3), [2, 1]);
+    }
+}
