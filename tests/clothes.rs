@@ -10,7 +10,7 @@ use figurant_core::draw::{Cast, DrawList, DrawOptions, draw};
 use figurant_core::job;
 use figurant_core::library::Library;
 use figurant_core::sampling::{Catalogue, Sampler};
-use figurant_core::scene::{BottomKind, Person};
+use figurant_core::scene::{BottomKind, Person, Top};
 use serde_json::{Value, json};
 
 static LIBRARY: LazyLock<Library> = LazyLock::new(|| Library::new(&[], 1024).unwrap());
@@ -40,34 +40,61 @@ fn people(document: Document, frames: u32) -> Vec<Person> {
 #[test]
 fn there_are_at_least_as_many_of_each_as_the_seed_has() {
     assert!(CATALOGUE.cloth_patterns.len() >= 28 && CATALOGUE.cloth_reliefs.len() >= 28);
+    assert!(CATALOGUE.cloth_finishes.len() >= 28);
+}
+
+/// Checks that two of what a cloth has are independent, and that all of the second come alike often.
+fn check_apart(tops: &[[&str; 2]], [first, second]: [&[String]; 2]) {
+    // The first half of each list.
+    let half = |id: &str, all: &[String]| {
+        f64::from(u8::from(all.iter().position(|known| known == id).unwrap() < all.len() / 2))
+    };
+    let mut counts: BTreeMap<&str, usize> = BTreeMap::new();
+    let (mut firsts, mut seconds, mut both) = (0.0, 0.0, 0.0);
+    for [a, b] in tops {
+        *counts.entry(*b).or_default() += 1;
+        let (a, b) = (half(a, first), half(b, second));
+        (firsts, seconds, both) = (firsts + a, seconds + b, both + a * b);
+    }
+    let n = tops.len() as f64;
+    assert!(n > 4000.0, "{n} people");
+    let expected = firsts * seconds / n;
+    // Four standard deviations of a count of a quarter.
+    assert!((both - expected).abs() < 4.0 * (n * 3.0 / 16.0).sqrt(), "{both} is not {expected}");
+    let mean = n / second.len() as f64;
+    assert_eq!(counts.len(), second.len());
+    for (id, count) in counts {
+        assert!((count as f64 - mean).abs() < 5.0 * mean.sqrt(), "{id}: {count} of {n}");
+    }
 }
 
 #[test]
-fn prints_and_weaves_are_drawn_apart_and_all_alike_often() {
-    let any = json!({"top": {"pattern": "any", "relief": "any"}});
+fn prints_weaves_and_finishes_are_drawn_apart_and_all_alike_often() {
+    let any = json!({"top": {"pattern": "any", "relief": "any", "finish": "any"}});
     let people = people(document("peoplesanspeople", &any), 900);
-    let mut counts: BTreeMap<&str, usize> = BTreeMap::new();
-    let (mut prints, mut weaves, mut both) = (0.0, 0.0, 0.0);
-    for top in people.iter().map(|p| &p.outfit.top) {
-        let (pattern, relief) = (top.texture.as_deref().unwrap(), top.relief.as_deref().unwrap());
-        *counts.entry(relief).or_default() += 1;
-        // The first half of each list.
-        let half = |id: &str, all: &[String]| {
-            f64::from(u8::from(all.iter().position(|known| known == id).unwrap() < all.len() / 2))
-        };
-        let a = half(pattern, &CATALOGUE.cloth_patterns);
-        let b = half(relief, &CATALOGUE.cloth_reliefs);
-        (prints, weaves, both) = (prints + a, weaves + b, both + a * b);
-    }
-    let n = people.len() as f64;
-    assert!(n > 4000.0, "{n} people");
-    let expected = prints * weaves / n;
-    // Four standard deviations of a count of a quarter.
-    assert!((both - expected).abs() < 4.0 * (n * 3.0 / 16.0).sqrt(), "{both} is not {expected}");
-    let mean = n / CATALOGUE.cloth_reliefs.len() as f64;
-    assert_eq!(counts.len(), CATALOGUE.cloth_reliefs.len());
-    for (relief, count) in counts {
-        assert!((count as f64 - mean).abs() < 5.0 * mean.sqrt(), "{relief}: {count} of {n}");
+    let Catalogue { cloth_patterns, cloth_reliefs, cloth_finishes, .. } = &*CATALOGUE;
+    let pairs = |a: fn(&Top) -> &Option<String>, b: fn(&Top) -> &Option<String>| {
+        let of = |p| [a, b].map(|get| get(p).as_deref().unwrap());
+        people.iter().map(|p| of(&p.outfit.top)).collect::<Vec<_>>()
+    };
+    check_apart(&pairs(|t| &t.texture, |t| &t.relief), [cloth_patterns, cloth_reliefs]);
+    check_apart(&pairs(|t| &t.texture, |t| &t.finish), [cloth_patterns, cloth_finishes]);
+    check_apart(&pairs(|t| &t.relief, |t| &t.finish), [cloth_reliefs, cloth_finishes]);
+}
+
+#[test]
+fn nothing_else_follows_from_the_finish() {
+    let [none, any] = ["none", "any"].map(|finish| {
+        let garment = json!({"finish": finish});
+        let wardrobe = json!({"top": garment, "bottom": garment, "outer": garment});
+        people(document("peoplesanspeople", &wardrobe), 30)
+    });
+    for (mut a, mut b) in none.into_iter().zip(any) {
+        assert!(a.outfit.top.finish.is_none() && b.outfit.bottom.finish.is_some());
+        for outfit in [&mut a.outfit, &mut b.outfit] {
+            (outfit.top.finish, outfit.bottom.finish, outfit.outer.finish) = (None, None, None);
+        }
+        assert_eq!(a, b);
     }
 }
 
@@ -137,6 +164,9 @@ fn weaves_that_do_not_exist_are_refused_with_their_field() {
     let message = refused(document("peoplesanspeople", &wrong));
     assert!(message.starts_with("people.wardrobe.bottom.relief: there is no relief"), "{message}");
     assert!(message.contains("did you mean `relief/waffle/00`"), "{message}");
+    let message =
+        refused(document("peoplesanspeople", &json!({"top": {"finish": "finish/sattin/00"}})));
+    assert!(message.contains("did you mean `finish/satin/00`"), "{message}");
     let mut listed = document("peoplesanspeople", &json!({}));
     let member = json!([{"wardrobe": {"outer": {"relief": "relief/twil/00"}}}]);
     listed.people.cast = serde_json::from_value(member).unwrap();

@@ -20,6 +20,7 @@ fn catalogue() -> Catalogue {
         textures: vec!["plain".to_owned()],
         cloth_patterns: vec!["stripes".to_owned()],
         cloth_reliefs: vec!["twill".to_owned()],
+        cloth_finishes: vec!["satin".to_owned()],
         ..Catalogue::default()
     }
 }

@@ -45,6 +45,7 @@ fn catalogue() -> Catalogue {
             .to_vec(),
         cloth_patterns: names("pattern", 5),
         cloth_reliefs: names("relief", 7),
+        cloth_finishes: names("finish", 5),
         environments: Environments::new(&[]).expect("no folders").ids().to_vec(),
     }
 }

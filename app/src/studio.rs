@@ -228,10 +228,11 @@ impl Road for Native {
                 library.poses.ids().count()
             ),
             format!(
-                "{} textures, {} cloth patterns and {} reliefs of cloth",
+                "{} textures; {} patterns, {} reliefs and {} finishes of cloth",
                 library.surface_textures().len(),
                 library.textures.ids(TextureGroup::Cloth).len(),
-                library.textures.ids(TextureGroup::Relief).len()
+                library.textures.ids(TextureGroup::Relief).len(),
+                library.textures.ids(TextureGroup::Finish).len()
             ),
         ])
     }

@@ -226,6 +226,10 @@ struct Surface {
     flags: u32,
     // First of the object's own spheres, and the one after the last.
     own_blockers: vec2<u32>,
+    // As map_first and map_info, of the finish.
+    finish_first: u32,
+    finish_info: u32,
+    pad: vec2<u32>,
     // Halves: red and green, blue and roughness.
     layers: array<vec2<u32>, 4>,
 }

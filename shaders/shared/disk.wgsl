@@ -2,8 +2,8 @@
 
 const SQUARE: u32 = 16u;
 // What light in focus has of its texel beyond the focus; less than the second is nothing.
-const SHARP_SHARE: f32 = 0.01;
-const LEAST_SHARE: f32 = 1e-5;
+const SHARP_SHARE: f32 = 0.001;
+const LEAST_SHARE: f32 = 1e-7;
 
 // How much of light with a radius counts as out of focus.
 fn blurred_share(radius: f32) -> f32 {

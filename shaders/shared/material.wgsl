@@ -1,5 +1,8 @@
 // Materials: maps, hue and masked layers, down to albedo, roughness and normal.
 
+// Roughness of cloth of full gloss.
+const GLOSSY: f32 = 0.25;
+
 struct Look {
     // Linear.
     albedo: vec3<f32>,
@@ -66,7 +69,11 @@ fn look_at(draw: u32, point: SurfacePoint) -> Look {
     var mask = vec4<f32>(0.0);
     let infos = surfaces[draw].map_info;
     let own_repeat = surfaces[draw].uv_repeat;
-    let maps = maps_of(infos);
+    let finish_info = surfaces[draw].finish_info;
+    let has_finish = (finish_info & MAP_PRESENT) != 0u;
+    let maps = maps_of(infos) | select(0u, 1u << FINISH_MAP, has_finish);
+    // Share of the hue's rotation, and gloss.
+    var finish = vec2<f32>(1.0, 0.0);
     var rest = maps;
     while rest != 0u {
         let map = firstTrailingBit(rest);
@@ -74,8 +81,11 @@ fn look_at(draw: u32, point: SurfacePoint) -> Look {
         // The mask is not repeated.
         let repeat = select(own_repeat, vec2<f32>(1.0), map == MASK_MAP);
         let footprint = footprint_of(point.d_dx * repeat, point.d_dy * repeat);
-        let info = (infos >> (8u * map)) & 255u;
-        let texel = look_up(surfaces[draw].map_first[map], info, point.uv * repeat, footprint);
+        let is_finish = map == FINISH_MAP;
+        let info = select((infos >> (8u * (map & 3u))) & 255u, finish_info, is_finish);
+        let of_four = surfaces[draw].map_first[map & 3u];
+        let first = select(of_four, surfaces[draw].finish_first, is_finish);
+        let texel = look_up(first, info, point.uv * repeat, footprint);
         if map == ALBEDO_MAP {
             look.albedo *= texel.xyz;
         } else if map == DETAIL_MAP {
@@ -84,14 +94,17 @@ fn look_at(draw: u32, point: SurfacePoint) -> Look {
         } else if map == NORMAL_MAP {
             let n = texel.xyz * 2.0 - 1.0;
             tilt = vec3<f32>(n.xy * surfaces[draw].normal_strength, n.z);
+        } else if is_finish {
+            finish = texel.xy;
         } else {
             mask = texel;
         }
     }
     let turn = surfaces[draw].hue_turn;
     if turn >= 0.0 {
-        look.albedo = rotate_hue(look.albedo, turn);
+        look.albedo += (rotate_hue(look.albedo, turn) - look.albedo) * finish.x;
     }
+    look.roughness += (GLOSSY - look.roughness) * finish.y;
     look.albedo *= detail;
     if (maps & (1u << NORMAL_MAP)) != 0u {
         look.normal = bent(look.normal, tilt, point);

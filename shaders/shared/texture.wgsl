@@ -10,6 +10,7 @@ const ALBEDO_MAP: u32 = 0u;
 const DETAIL_MAP: u32 = 1u;
 const NORMAL_MAP: u32 = 2u;
 const MASK_MAP: u32 = 3u;
+const FINISH_MAP: u32 = 4u;
 
 // A texel of plain numbers, 0..1.
 fn decode_plain(texel: u32) -> vec4<f32> {

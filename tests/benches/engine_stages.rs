@@ -32,10 +32,7 @@ fn measure_engine(
     frames: usize,
 ) {
     let wanted: Outputs = outputs.iter().copied().collect();
-    let plan = PassPlan::new(
-        &wanted,
-        SceneFacts::ANY,
-    );
+    let plan = PassPlan::new(&wanted, SceneFacts::ANY);
     let mut walls = Vec::new();
     let mut stages: Vec<(&'static str, Vec<f64>)> = Vec::new();
     for frame in 0..frames + 2 {
@@ -112,8 +109,7 @@ fn main() {
 
     if let Some(path) = arguments.get(1) {
         let list = crowd(640, 640, 4, 15_000);
-        let plan =
-            PassPlan::new(&everything.iter().copied().collect(), SceneFacts::ANY);
+        let plan = PassPlan::new(&everything.iter().copied().collect(), SceneFacts::ANY);
         let frame = CpuEngine::new(auto)
             .render(&list, &plan, &mut StageTimes::default())
             .expect("the scene is valid");

@@ -6,7 +6,7 @@ use figurant_core::engine::cpu::{CpuEngine, CpuOptions, SimdChoice};
 use figurant_core::engine::{Engine, EngineError};
 use figurant_core::library::texture::{Encoding, Texture, color_from_srgb8};
 use figurant_core::plan::{Output, StageTimes};
-use figurant_tests::drawlists::{add, any_grade, empty, mixed, view};
+use figurant_tests::drawlists::{add, any_defocus, any_grade, empty, mixed, view};
 use figurant_tests::meshes::{self, Dice};
 use glam::{DAffine3, DMat3, DVec3};
 use std::sync::Arc;
@@ -17,6 +17,9 @@ fn lit(seed: u64, samples: u32) -> DrawList {
     let mut list = mixed(seed, samples);
     if seed % 2 == 1 {
         list.grade = any_grade(&mut Dice::new(seed));
+    }
+    if seed % 4 >= 2 {
+        list.defocus = Some(any_defocus(&mut Dice::new(seed + 1)));
     }
     list.lights.sun =
         Some(Sun { direction_to_sun: [0.3, 0.8, 0.5], color_lux: [2.0; 3], shadow: true });
@@ -45,6 +48,7 @@ fn lit(seed: u64, samples: u32) -> DrawList {
     for (i, m) in list.materials.iter_mut().enumerate() {
         m.albedo_map = (i % 2 == 0).then_some(0);
         m.normal_map = (i % 3 == 0).then_some(0);
+        m.finish_map = (i % 3 == 1).then_some(0);
         m.hue_offset_deg = i as f32 * 70.0;
     }
     list

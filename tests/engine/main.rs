@@ -6,4 +6,5 @@ mod common;
 mod labels;
 mod lens;
 mod limits;
+mod optics;
 mod picture;

@@ -107,6 +107,39 @@ fn a_white_wall_sends_back_what_the_formula_says() {
     assert_eq!(pixel(&render(&list, &[Output::Rgb]), 32, 32), [0; 3]);
 }
 
+/// A finish of nothing leaves hue and roughness, one of everything turns the one and polishes the
+/// other, and half of it does half of both.
+#[test]
+fn a_finish_turns_the_hue_and_polishes_by_its_share() {
+    let wall = |finish: Option<[u8; 2]>, hue_offset_deg: f32, roughness: f32| {
+        let mut list = empty(view(64, 64, 64.0), 1);
+        let material = Material { hue_offset_deg, roughness, ..plain([0.5, 0.3, 0.2]) };
+        let square = facing_square(20.0, DVec3::new(0.0, 0.0, -3.0));
+        add(&mut list, meshes::square(), square, material);
+        list.lights.sun =
+            Some(Sun { direction_to_sun: [0.1, 0.2, 1.0], color_lux: [1.5; 3], shadow: false });
+        list.grade.tone_curve = ToneCurve::None;
+        if let Some([turned, gloss]) = finish {
+            let texel = u32::from_le_bytes([turned, gloss, 0, 0]);
+            list.textures =
+                vec![Arc::new(Texture::from_level0(2, Encoding::Linear, vec![texel; 16]))];
+            list.materials[0].finish_map = Some(0);
+        }
+        let at = pixel(&render(&list, &[Output::Rgb]), 20, 24);
+        at.map(|byte| linear_from_srgb(f64::from(byte) / 255.0))
+    };
+    let near = |a: [f64; 3], b: [f64; 3]| a.iter().zip(b).all(|(a, b)| (a - b).abs() < 0.006);
+    let (own, turned) = (wall(None, 0.0, 0.8), wall(None, 120.0, 0.8));
+    assert!(!near(own, turned));
+    assert!(near(wall(Some([0, 0]), 120.0, 0.8), own));
+    assert!(near(wall(Some([255, 0]), 120.0, 0.8), turned));
+    let half = std::array::from_fn(|c| (own[c] + turned[c]) * 0.5);
+    assert!(near(wall(Some([128, 0]), 120.0, 0.8), half));
+    let polished = wall(None, 0.0, Material::GLOSSY);
+    assert!(!near(polished, own));
+    assert!(near(wall(Some([0, 255]), 0.0, 0.8), polished));
+}
+
 #[test]
 fn a_sensors_noise_has_the_spread_that_light_and_reading_give() {
     for (shot, read, light) in [(0.01_f64, 0.0_f64, 0.5_f64), (0.0, 0.03, 0.4), (0.004, 0.02, 0.25)]

@@ -8,7 +8,9 @@ use figurant_core::job::parity::Difference;
 use figurant_core::label;
 use figurant_core::library::texture::{Encoding, Texture, color_from_srgb8};
 use figurant_core::plan::{Output, Outputs};
-use figurant_tests::drawlists::{any_blockers, any_grade, any_lens, any_surroundings, mixed};
+use figurant_tests::drawlists::{
+    any_blockers, any_defocus, any_grade, any_lens, any_surroundings, mixed,
+};
 use figurant_tests::meshes::Dice;
 use std::sync::Arc;
 
@@ -54,6 +56,7 @@ fn lit(seed: u64, samples: u32) -> DrawList {
         m.normal_map = (i % 3 == 0).then_some(1);
         m.detail_map = (i % 4 == 1).then_some(1);
         m.detail_strength = 0.5;
+        m.finish_map = (i % 3 == 1).then_some(1);
         m.mask = (i % 5 == 2).then_some(1);
         m.hue_offset_deg = i as f32 * 70.0;
         m.wrap = if dice.unit() < 0.3 { 0.3 } else { 0.0 };
@@ -154,6 +157,28 @@ fn hard_scenes_through_lenses_agree_with_one_sample() {
 fn hard_scenes_through_lenses_agree_with_more_samples() {
     hard_scenes_through_lenses(4, 1120..1128);
     hard_scenes_through_lenses(16, 1200..1203);
+}
+
+/// Pictures of sampled scenes with light that leaves its pixel, at sizes that are no multiple of
+/// anything.
+#[test]
+fn sampled_scenes_out_of_focus_agree() {
+    let Some(mut engine) = engine() else { return };
+    let source = Source::new();
+    let mut all = Difference::default();
+    for frame in 0..12_u32 {
+        let side = [128, 93, 61][frame as usize % 3];
+        let (_, mut drawn) =
+            source.drawn("peoplesanspeople", frame, side, [1, 4][frame as usize % 2]);
+        let (list, mut dice) = (&mut drawn.list, Dice::new(frame.into()));
+        list.defocus = (frame % 4 != 1).then(|| any_defocus(&mut dice));
+        list.grade.bloom = any_grade(&mut dice).bloom;
+        let (cpu, gpu) = (by_cpu(list, &Output::ALL), by_gpu(&mut engine, list, &Output::ALL));
+        let one = compare(&format!("frame {frame}"), list, &cpu, &gpu);
+        println!("frame {frame}: {one:?}");
+        all.add(&one);
+    }
+    check(&all);
 }
 
 /// Pictures and labels of sampled scenes through a barrel, a cushion and a fisheye.

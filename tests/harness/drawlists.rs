@@ -5,7 +5,8 @@ use std::sync::Arc;
 use figurant_core::base::lens::{Lens, LensError, LensGrid};
 use figurant_core::draw::DrawList;
 use figurant_core::draw::abi::{
-    Blocker, ColorGrade, Draw, DrawObject, Grade, Lights, Material, Surroundings, ToneCurve, View,
+    Blocker, Bloom, ColorGrade, Defocus, Draw, DrawObject, Grade, Lights, Material, Surroundings,
+    ToneCurve, View,
 };
 use figurant_core::library::environment::EnvironmentMap;
 use figurant_core::library::environment::equirect::Equirect;
@@ -100,7 +101,9 @@ pub fn any_grade(dice: &mut Dice) -> Grade {
     };
     let (before, after) = (matrix(), matrix());
     let contrast = if dice.unit() < 0.3 { 1.0 } else { dice.range(0.5, 1.5) as f32 };
+    let bloom = Bloom { share: dice.unit() as f32, spread: dice.unit() as f32 };
     Grade {
+        bloom: (dice.unit() < 0.5).then_some(bloom),
         vignette: if dice.unit() < 0.3 { 0.0 } else { dice.range(0.0, 0.6) as f32 },
         shot_noise: if dice.unit() < 0.6 { 0.0 } else { dice.range(0.0, 0.01) as f32 },
         read_noise: if dice.unit() < 0.6 { 0.0 } else { dice.range(0.0, 0.02) as f32 },
@@ -109,6 +112,12 @@ pub fn any_grade(dice: &mut Dice) -> Grade {
         grain: if dice.unit() < 0.5 { 0.0 } else { 0.03 },
         grain_key: dice.below(1 << 30) as u32,
     }
+}
+
+/// Some focus, with disks of some pixels.
+pub fn any_defocus(dice: &mut Dice) -> Defocus {
+    let (focus_m, at_infinity_px) = (dice.range(0.5, 6.0) as f32, dice.range(0.5, 9.0) as f32);
+    Defocus { focus_m, at_infinity_px, largest_px: at_infinity_px * dice.range(1.0, 2.0) as f32 }
 }
 
 /// A coloured sky with a small bright lamp in it, turned at random.

@@ -304,8 +304,7 @@ impl Sorted {
         least: usize,
     ) -> Vec<Flaw> {
         let mut render = |list: &DrawList| {
-            let plan =
-                PassPlan::new(&Outputs::from([Output::Instance]), SceneFacts::default());
+            let plan = PassPlan::new(&Outputs::from([Output::Instance]), SceneFacts::default());
             engine.render(list, &plan, &mut StageTimes::default()).expect("a sound draw list")
         };
         let seen = render(&self.list(view, palette, Shown::All));

@@ -72,7 +72,7 @@ const fn reason(why: Skipped) -> &'static str {
     match why {
         Skipped::NotWanted => "skipped: nothing shown needs it",
         Skipped::NoSunShadow => "skipped: no sun casts a shadow",
-        Skipped::InFocus => "skipped: nothing seen is out of focus",
-        Skipped::NoBloom => "skipped: the lens scatters no light",
+        Skipped::InFocus => "skipped: all is in focus",
+        Skipped::NoBloom => "skipped: no light scatters",
     }
 }

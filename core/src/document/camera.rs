@@ -91,7 +91,9 @@ pub struct DepthOfField {
     pub enabled: bool,
     /// Focal length over the width of the aperture: the smaller, the more blur.
     pub f_number: Param,
-    /// Distance along the view axis of the plane that is sharp.
+    /// What is sharp.
+    pub focus: Focus,
+    /// Distance along the view axis of the plane that is sharp, where nothing else is asked for.
     pub focus_distance_m: Param,
     /// Of the lens as far as it blurs; null for that of the camera, which is its `focal_length_mm` or
     /// what the angle and the sensor make it. The seed's camera blurs by a focal length that has nothing
@@ -104,10 +106,23 @@ impl Default for DepthOfField {
         Self {
             enabled: true,
             f_number: 45.0.into(),
+            focus: Focus::Distance,
             focus_distance_m: Param::uniform(0.1, 4.0),
             focal_length_mm: Some(Param::uniform(1.0, 23.0)),
         }
     }
+}
+
+/// What a camera focuses on.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Focus {
+    /// A plane at a distance.
+    #[default]
+    Distance,
+    /// The plane through the eyes of the person, as they stand, who is the nearest of those whose head
+    /// is in the picture; a distance where there is none.
+    NearestPerson,
 }
 
 /// How a lens bends straight lines. Lengths are fractions of the focal length.

@@ -474,15 +474,26 @@ fn wardrobe(c: &mut Check, wardrobe: &Wardrobe) {
         given(param, |param| c.param(path, param, range));
     }
     let cloths = [
-        ("top", &top.color, [&top.pattern, &top.relief], &top.hue_offset_deg),
-        ("bottom", &bottom.color, [&bottom.pattern, &bottom.relief], &bottom.hue_offset_deg),
-        ("outer", &outer.color, [&outer.pattern, &outer.relief], &outer.hue_offset_deg),
+        ("top", &top.color, [&top.pattern, &top.relief, &top.finish], &top.hue_offset_deg),
+        (
+            "bottom",
+            &bottom.color,
+            [&bottom.pattern, &bottom.relief, &bottom.finish],
+            &bottom.hue_offset_deg,
+        ),
+        (
+            "outer",
+            &outer.color,
+            [&outer.pattern, &outer.relief, &outer.finish],
+            &outer.hue_offset_deg,
+        ),
     ];
-    for (name, color, [pattern, relief], hue_offset_deg) in cloths {
+    for (name, color, [pattern, relief, finish], hue_offset_deg) in cloths {
         let at = |field: &str| format!("people.wardrobe.{name}.{field}");
         given(color, |color| c.color(&at("color"), color));
         c.ids(&at("pattern"), pattern);
         c.ids(&at("relief"), relief);
+        c.ids(&at("finish"), finish);
         c.param(&at("hue_offset_deg"), hue_offset_deg, ANGLE);
     }
     c.param("people.wardrobe.bottom.trousers_length", &bottom.trousers_length, SHARE);

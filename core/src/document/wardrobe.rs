@@ -119,6 +119,9 @@ pub struct Top {
     /// How the cloth is woven: a relief's id; `"any"` for one of all, `"none"` for folds alone. Knitwear
     /// and leather have one of their own.
     pub relief: Choice<String>,
+    /// Where its hue is turned and where it shines: a finish's id; `"any"` for one of all, `"none"` for
+    /// the same all over.
+    pub finish: Choice<String>,
     /// Rotation of the hue.
     pub hue_offset_deg: Param,
 }
@@ -133,6 +136,7 @@ impl Default for Top {
             color: Auto::default(),
             pattern: some_pattern(0.35),
             relief: some_pattern(0.6),
+            finish: some_pattern(0.4),
             hue_offset_deg: Param::uniform(0.0, 360.0),
         }
     }
@@ -161,6 +165,9 @@ pub struct Bottom {
     /// How the cloth is woven: a relief's id; `"any"` for one of all, `"none"` for folds alone. Knitwear
     /// and leather have one of their own.
     pub relief: Choice<String>,
+    /// Where its hue is turned and where it shines: a finish's id; `"any"` for one of all, `"none"` for
+    /// the same all over.
+    pub finish: Choice<String>,
     /// Rotation of the hue.
     pub hue_offset_deg: Param,
 }
@@ -177,6 +184,7 @@ impl Default for Bottom {
             color: Auto::default(),
             pattern: some_pattern(0.15),
             relief: some_pattern(0.6),
+            finish: some_pattern(0.4),
             hue_offset_deg: Param::uniform(0.0, 360.0),
         }
     }
@@ -199,6 +207,9 @@ pub struct Outer {
     /// How the cloth is woven: a relief's id; `"any"` for one of all, `"none"` for folds alone. Knitwear
     /// and leather have one of their own.
     pub relief: Choice<String>,
+    /// Where its hue is turned and where it shines: a finish's id; `"any"` for one of all, `"none"` for
+    /// the same all over.
+    pub finish: Choice<String>,
     /// Rotation of the hue.
     pub hue_offset_deg: Param,
 }
@@ -212,6 +223,7 @@ impl Default for Outer {
             color: Auto::default(),
             pattern: some_pattern(0.15),
             relief: some_pattern(0.6),
+            finish: some_pattern(0.4),
             hue_offset_deg: Param::default(),
         }
     }

@@ -116,7 +116,7 @@ pub struct Material {
     pub detail_map: Option<u32>,
     /// See `detail_map`.
     pub detail_strength: f32,
-    /// Repeats of the albedo, detail and normal maps over 0..1; the mask is not repeated.
+    /// Repeats of the albedo, detail, normal and finish maps over 0..1; the mask is not repeated.
     pub uv_repeat: [f32; 2],
     /// Rotation of the hue in HSV; 0 for none.
     pub hue_offset_deg: f32,
@@ -129,12 +129,20 @@ pub struct Material {
     pub normal_map: Option<u32>,
     /// Factor on the normal map's x and y.
     pub normal_strength: f32,
+    /// Linear texture of cloth: red is the share of the hue's rotation that is done, green moves the
+    /// roughness towards [`Material::GLOSSY`].
+    pub finish_map: Option<u32>,
     /// Linear texture of four masks.
     pub mask: Option<u32>,
     /// Linear colour and roughness of each masked layer.
     pub layers: [[f32; 4]; 4],
     /// Light that goes round the terminator, for skin: 0 none .. 0.5.
     pub wrap: f32,
+}
+
+impl Material {
+    /// Roughness of cloth of full gloss.
+    pub const GLOSSY: f32 = 0.25;
 }
 
 impl Default for Material {
@@ -150,6 +158,7 @@ impl Default for Material {
             metallic: 0.0,
             normal_map: None,
             normal_strength: 1.0,
+            finish_map: None,
             mask: None,
             layers: [[0.0; 4]; 4],
             wrap: 0.0,

@@ -15,7 +15,7 @@ pub fn defocus(camera: &Camera, nearest_m: f64) -> Option<Defocus> {
     let nearest_px = at_infinity_px * (lens.focus_distance_m / nearest_m - 1.0);
     let limit_px = (LARGEST * height).min(Defocus::NEAR_LIMIT * at_infinity_px);
     let largest_px = nearest_px.max(at_infinity_px).min(limit_px);
-    (largest_px > Defocus::SHARP_PX).then(|| Defocus {
+    (largest_px > Defocus::SHARP_PX).then_some(Defocus {
         focus_m: lens.focus_distance_m as f32,
         at_infinity_px: at_infinity_px as f32,
         largest_px: largest_px as f32,

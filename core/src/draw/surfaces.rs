@@ -17,9 +17,10 @@ const WEAVE_STRENGTH: f32 = 0.8;
 const HOLLOWS_STRENGTH: f32 = 0.35;
 
 /// How many pixels of the picture a metre must span for what is only seen close up: furrows and
-/// freckles, strands, then the folds of cloth (about five pixels to a fold).
+/// freckles, strands, then the folds of cloth (about five pixels to a fold), then its finish.
 const SKIN_PX_PER_M: f64 = 200.0;
 const FOLDS_PX_PER_M: f64 = 100.0;
+const FINISH_PX_PER_M: f64 = 40.0;
 
 /// What has been put into a draw list so far.
 #[derive(Default)]
@@ -88,6 +89,7 @@ impl Surfaces {
         } else {
             self.optional(weave.or(detail), library, list)?
         };
+        let finish = surface.finish.as_deref().filter(|_| px_per_m > FINISH_PX_PER_M);
         let mask = match surface.mask {
             Mask::None => None,
             Mask::Head(scalp, beard) => {
@@ -121,6 +123,7 @@ impl Surfaces {
             normal_map,
             normal_strength,
             detail_map,
+            finish_map: self.optional(finish, library, list)?,
             detail_strength: weave.map_or(surface.detail_strength, |_| HOLLOWS_STRENGTH),
             uv_repeat: uv_repeat.map(|n| n * surface.repeat),
             hue_offset_deg: surface.hue_offset_deg,

@@ -203,7 +203,9 @@ fn check_material(list: &DrawList, index: usize, m: &Material) -> Result<(), Eng
     let all =
         m.base_color.iter().chain(&m.uv_repeat).chain(m.layers.as_flattened()).chain(&numbers);
     finite(NO_OBJECT, "a number of a material", all)?;
-    for map in [m.albedo_map, m.detail_map, m.normal_map, m.mask].into_iter().flatten() {
+    for map in
+        [m.albedo_map, m.detail_map, m.normal_map, m.finish_map, m.mask].into_iter().flatten()
+    {
         within("texture of material", index, map.into(), list.textures.len())?;
     }
     Ok(())

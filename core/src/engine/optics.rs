@@ -3,7 +3,7 @@
 use crate::draw::abi::Defocus;
 
 /// Largest radius over which light out of focus is gathered, texels.
-const MOST_TEXELS: f32 = 5.0;
+const MOST_TEXELS: f32 = 8.0;
 /// Levels of the pyramid of scattered light at most.
 const MOST_LEVELS: usize = 12;
 /// Texels of the larger side that a level has at least.
@@ -35,7 +35,7 @@ mod tests {
 
     #[test]
     fn disks_fit_what_is_looked_at() {
-        for (largest_px, level) in [(0.6, 0), (5.0, 0), (5.1, 1), (32.0, 3), (400.0, 7)] {
+        for (largest_px, level) in [(0.6, 0), (8.0, 0), (8.1, 1), (32.0, 2), (400.0, 6)] {
             let defocus = Defocus { focus_m: 1.0, at_infinity_px: largest_px, largest_px };
             assert_eq!(blur_level(&defocus), level, "{largest_px}");
         }

@@ -69,6 +69,8 @@ pub struct Surface {
     pub texture: Option<String>,
     /// How cloth is woven: id in the library.
     pub weave: Option<String>,
+    /// Where the hue of cloth is turned and where it shines: id in the library.
+    pub finish: Option<String>,
     /// The figure's map of the head's colour with these freckles.
     pub tint: Option<Freckles>,
     /// Rotation of the hue.
@@ -115,6 +117,7 @@ pub fn surface(kind: PartKind, person: &Person) -> Surface {
         PartKind::Outer => {
             let cloth = Surface {
                 weave: outer.relief.clone(),
+                finish: outer.finish.clone(),
                 ..cloth(outer.color, outer.texture.as_ref(), outer.hue_offset_deg)
             };
             match outer.kind {
@@ -154,6 +157,7 @@ fn plain(base_color: [f32; 3], roughness: f32) -> Surface {
         layers: [[0.0; 4]; 4],
         texture: None,
         weave: None,
+        finish: None,
         tint: None,
         hue_offset_deg: 0.0,
         repeat: 1.0,
@@ -318,6 +322,7 @@ fn cloth(color: [f64; 3], texture: Option<&String>, hue_offset_deg: f64) -> Surf
 fn top_surface(top: &Top) -> Surface {
     let cloth = Surface {
         weave: top.relief.clone(),
+        finish: top.finish.clone(),
         relief_strength: top_relief(top.kind),
         ..cloth(top.color, top.texture.as_ref(), top.hue_offset_deg)
     };
@@ -335,6 +340,7 @@ fn top_surface(top: &Top) -> Surface {
 fn bottom_surface(bottom: &Bottom) -> Surface {
     let cloth = Surface {
         weave: bottom.relief.clone(),
+        finish: bottom.finish.clone(),
         relief_strength: bottom_relief(bottom.kind),
         ..cloth(bottom.color, bottom.texture.as_ref(), bottom.hue_offset_deg)
     };

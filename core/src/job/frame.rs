@@ -241,6 +241,7 @@ pub fn catalogue(library: &Library) -> Catalogue {
         textures: library.surface_textures(),
         cloth_patterns: library.textures.ids(TextureGroup::Cloth).to_vec(),
         cloth_reliefs: library.textures.ids(TextureGroup::Relief).to_vec(),
+        cloth_finishes: library.textures.ids(TextureGroup::Finish).to_vec(),
         environments: library.environments.ids().to_vec(),
     }
 }

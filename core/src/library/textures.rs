@@ -5,6 +5,7 @@
 //! | `procedural/<family>/<nn>` | colour, tiles: for walls, floors and objects |
 //! | `cloth/<family>/<nn>` | colour, tiles, light: multiplied by a garment's colour |
 //! | `detail/<skin, hair, curls, cloth, folds>` | plain numbers round 0.5, tiles |
+//! | `finish/<family>/<variant>` | where the hue of cloth is turned and where it shines |
 //! | `relief/<family>/<variant>` | the same of cloth by how it is woven, with a normal map |
 //! | `normal/<...>` | plain numbers, normals of the computed texture of that name |
 //! | `folder/<folder>/<file>` | colour, a user's JPEG or PNG by its path below the folder |
@@ -40,6 +41,8 @@ pub enum TextureGroup {
     Detail,
     /// Computed weaves of cloth, plain numbers.
     Relief,
+    /// Computed finishes of cloth, plain numbers.
+    Finish,
     /// Computed normal maps, plain numbers.
     Normal,
     /// Users' pictures.
@@ -81,6 +84,7 @@ pub struct TextureLibrary {
     cloth: Vec<String>,
     detail: Vec<String>,
     relief: Vec<String>,
+    finish: Vec<String>,
     normal: Vec<String>,
     folder: Vec<String>,
     paths: BTreeMap<String, PathBuf>,
@@ -103,6 +107,7 @@ impl TextureLibrary {
             cloth: procedural::ids(Kind::Cloth),
             detail: procedural::ids(Kind::Detail),
             relief: procedural::ids(Kind::Relief),
+            finish: procedural::ids(Kind::Finish),
             normal: procedural::normal_ids(),
             folder: paths.keys().cloned().collect(),
             paths,
@@ -134,6 +139,7 @@ impl TextureLibrary {
             TextureGroup::Cloth => &self.cloth,
             TextureGroup::Detail => &self.detail,
             TextureGroup::Relief => &self.relief,
+            TextureGroup::Finish => &self.finish,
             TextureGroup::Normal => &self.normal,
             TextureGroup::Folder => &self.folder,
         }
@@ -203,9 +209,9 @@ impl TextureLibrary {
     }
 
     fn all_groups(&self) -> impl Iterator<Item = &[String]> {
-        [&self.procedural, &self.cloth, &self.detail, &self.relief, &self.normal, &self.folder]
-            .into_iter()
-            .map(Vec::as_slice)
+        let of_cloth = [&self.cloth, &self.detail, &self.relief, &self.finish];
+        let others = [&self.procedural, &self.normal, &self.folder];
+        of_cloth.into_iter().chain(others).map(Vec::as_slice)
     }
 
     fn unknown(&self, id: &str) -> TextureError {
@@ -262,6 +268,7 @@ mod tests {
             (TextureGroup::Cloth, "cloth/"),
             (TextureGroup::Detail, "detail/"),
             (TextureGroup::Relief, "relief/"),
+            (TextureGroup::Finish, "finish/"),
             (TextureGroup::Normal, "normal/"),
         ] {
             let ids = library.ids(group);

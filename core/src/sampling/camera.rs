@@ -4,10 +4,11 @@ use glam::DVec3;
 
 use super::keys;
 use super::linked::Draws;
+use super::place::is_seen;
 use super::value::{number, rotation, vector};
 use crate::base::lens::Lens;
-use crate::document::{self, Brown, Distortion, Document, Fisheye};
-use crate::scene::{Camera, DepthOfField};
+use crate::document::{self, Brown, Distortion, Document, Fisheye, Focus};
+use crate::scene::{Camera, DepthOfField, Person, Placement};
 
 pub(super) fn camera(document: &Document, draws: Draws) -> Camera {
     let camera = &document.camera;
@@ -55,6 +56,27 @@ fn depth_of_field(
         },
         sensor_height_mm: camera.sensor_height_mm,
     })
+}
+
+/// Height of the eyes of who stands, share of the stature (NASA-STD-3000, 1995: 0.936 of the median
+/// man and woman), and how far they lie before the middle of the body.
+const EYES: [f64; 2] = [0.936, 0.09];
+
+/// Focuses on whom the document asks for.
+pub(super) fn focus(wanted: &document::DepthOfField, camera: &mut Camera, people: &[Person]) {
+    if wanted.focus == Focus::Distance {
+        return;
+    }
+    let eyes = |person: &Person| {
+        let Placement { position_m, rotation, scale } = person.placement;
+        let in_model = DVec3::new(0.0, EYES[0] * person.body.stature_m, EYES[1]);
+        position_m + rotation * (in_model * scale)
+    };
+    let seen = people.iter().map(eyes).filter(|at| is_seen(camera, *at));
+    let nearest_m = seen.map(|at| -camera.view_from_world(at).z).min_by(f64::total_cmp);
+    if let (Some(blur), Some(nearest_m)) = (&mut camera.depth_of_field, nearest_m) {
+        blur.focus_distance_m = nearest_m;
+    }
 }
 
 fn lens(distortion: &Distortion, draws: Draws) -> Lens {

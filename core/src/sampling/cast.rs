@@ -92,6 +92,7 @@ pub(super) fn dyed(outfit: &Outfit) -> MemberWardrobe {
             color: color(top.color),
             pattern: pattern(&top.texture),
             relief: pattern(&top.relief),
+            finish: pattern(&top.finish),
             hue_offset_deg: Some(top.hue_offset_deg),
             ..MemberTop::default()
         },
@@ -99,6 +100,7 @@ pub(super) fn dyed(outfit: &Outfit) -> MemberWardrobe {
             color: color(bottom.color),
             pattern: pattern(&bottom.texture),
             relief: pattern(&bottom.relief),
+            finish: pattern(&bottom.finish),
             hue_offset_deg: Some(bottom.hue_offset_deg),
             ..MemberBottom::default()
         },
@@ -106,6 +108,7 @@ pub(super) fn dyed(outfit: &Outfit) -> MemberWardrobe {
             color: color(outer.color),
             pattern: pattern(&outer.texture),
             relief: pattern(&outer.relief),
+            finish: pattern(&outer.finish),
             hue_offset_deg: Some(outer.hue_offset_deg),
             ..MemberOuter::default()
         },
@@ -155,9 +158,10 @@ pub(super) fn check(people: &People, catalogue: &Catalogue, problems: &mut Vec<P
         }
         let wardrobe = &member.wardrobe;
         let (top, bottom, outer) = (&wardrobe.top, &wardrobe.bottom, &wardrobe.outer);
-        let [patterns, reliefs] = [
+        let [patterns, reliefs, finishes] = [
             ("pattern", "cloth pattern", &catalogue.cloth_patterns),
             ("relief", "relief of cloth", &catalogue.cloth_reliefs),
+            ("finish", "finish of cloth", &catalogue.cloth_finishes),
         ];
         let cloths = [
             ("top", &top.pattern, patterns),
@@ -166,6 +170,9 @@ pub(super) fn check(people: &People, catalogue: &Catalogue, problems: &mut Vec<P
             ("top", &top.relief, reliefs),
             ("bottom", &bottom.relief, reliefs),
             ("outer", &outer.relief, reliefs),
+            ("top", &top.finish, finishes),
+            ("bottom", &bottom.finish, finishes),
+            ("outer", &outer.finish, finishes),
         ];
         for (garment, id, (field, kind, known)) in cloths {
             let Some(id) = id.as_ref().filter(|id| *id != PLAIN && !known.contains(id)) else {

@@ -56,6 +56,8 @@ pub struct Catalogue {
     pub cloth_patterns: Vec<String>,
     /// Ways in which cloth is woven.
     pub cloth_reliefs: Vec<String>,
+    /// Finishes of cloth.
+    pub cloth_finishes: Vec<String>,
     /// Pictures of all directions.
     pub environments: Vec<String>,
 }
@@ -136,7 +138,9 @@ impl Sampler {
     pub fn scene(&self, frame: u32) -> Scene {
         let Self { document, catalogue, faces, links } = self;
         let draws = Draws::linked(document.seed, frame, links);
-        let camera = camera::camera(document, draws);
+        let mut camera = camera::camera(document, draws);
+        let people = people::people(document, catalogue, faces, draws, &camera);
+        camera::focus(&document.camera.depth_of_field, &mut camera, &people);
         Scene {
             frame,
             seed: document.seed,
@@ -145,7 +149,7 @@ impl Sampler {
             exposure_ev100: post::exposure_ev100(&document.post, draws),
             post: post::post(&document.post, draws),
             objects: background::objects(document, catalogue, draws, &camera),
-            people: people::people(document, catalogue, faces, draws, &camera),
+            people,
             jpeg_quality: output::jpeg_quality(&document.output, draws),
         }
     }
@@ -202,6 +206,7 @@ pub fn check_assets(document: &Document, catalogue: &Catalogue) -> Vec<Problem> 
     let textures = ("texture", &catalogue.textures, true);
     let patterns = ("cloth pattern", &catalogue.cloth_patterns, true);
     let reliefs = ("relief of cloth", &catalogue.cloth_reliefs, true);
+    let finishes = ("finish of cloth", &catalogue.cloth_finishes, true);
     let (top, bottom) = (&people.wardrobe.top, &people.wardrobe.bottom);
     let outer = &people.wardrobe.outer;
     let environment = &document.lights.environment;
@@ -224,6 +229,9 @@ pub fn check_assets(document: &Document, catalogue: &Catalogue) -> Vec<Problem> 
         (people.enabled, "people.wardrobe.top.relief", &top.relief, reliefs),
         (people.enabled, "people.wardrobe.bottom.relief", &bottom.relief, reliefs),
         (people.enabled, "people.wardrobe.outer.relief", &outer.relief, reliefs),
+        (people.enabled, "people.wardrobe.top.finish", &top.finish, finishes),
+        (people.enabled, "people.wardrobe.bottom.finish", &bottom.finish, finishes),
+        (people.enabled, "people.wardrobe.outer.finish", &outer.finish, finishes),
     ];
     let mut problems = unread(document);
     for (enabled, path, choice, (kind, known, none_allowed)) in all {

@@ -124,6 +124,7 @@ impl Drawing<'_> {
                 })
             }),
             relief: self.relief(known.relief.as_ref(), &top.relief, keys::TOP_RELIEF),
+            finish: self.finish(known.finish.as_ref(), &top.finish, keys::TOP_FINISH),
             hue_offset_deg: known
                 .hue_offset_deg
                 .unwrap_or_else(|| number(&top.hue_offset_deg, self.here.of(keys::TOP_HUE))),
@@ -179,6 +180,7 @@ impl Drawing<'_> {
             relief: self
                 .relief(known.relief.as_ref(), &bottom.relief, keys::BOTTOM_RELIEF)
                 .filter(|_| !jeans),
+            finish: self.finish(known.finish.as_ref(), &bottom.finish, keys::BOTTOM_FINISH),
             hue_offset_deg: known
                 .hue_offset_deg
                 .unwrap_or_else(|| number(&bottom.hue_offset_deg, self.here.of(keys::BOTTOM_HUE))),
@@ -209,6 +211,7 @@ impl Drawing<'_> {
                 )
             }),
             relief: self.relief(known.relief.as_ref(), &outer.relief, keys::OUTER_RELIEF),
+            finish: self.finish(known.finish.as_ref(), &outer.finish, keys::OUTER_FINISH),
             hue_offset_deg: known
                 .hue_offset_deg
                 .unwrap_or_else(|| number(&outer.hue_offset_deg, self.here.of(keys::OUTER_HUE))),
@@ -217,6 +220,10 @@ impl Drawing<'_> {
 
     fn relief(&self, known: Option<&String>, given: &Choice<String>, key: Key) -> Option<String> {
         printed(known, || asset(given, &self.catalogue.cloth_reliefs, self.here.of(key)))
+    }
+
+    fn finish(&self, known: Option<&String>, given: &Choice<String>, key: Key) -> Option<String> {
+        printed(known, || asset(given, &self.catalogue.cloth_finishes, self.here.of(key)))
     }
 
     fn dye(
@@ -234,7 +241,7 @@ impl Drawing<'_> {
     }
 }
 
-/// The pattern or the relief of a cloth, if any: the known one, or else one that is drawn.
+/// The pattern, relief or finish of a cloth, if any: the known one, or else one that is drawn.
 fn printed(known: Option<&String>, drawn: impl FnOnce() -> Option<String>) -> Option<String> {
     known.map_or_else(drawn, |id| Some(id.clone()).filter(|id| id != PLAIN))
 }

@@ -90,7 +90,7 @@ impl<'a> Rules<'a> {
 }
 
 /// Whether a point lies in the picture and not nearer than the near plane.
-fn is_seen(camera: &Camera, p_in_world: DVec3) -> bool {
+pub(super) fn is_seen(camera: &Camera, p_in_world: DVec3) -> bool {
     let p_in_view = camera.view_from_world(p_in_world);
     let inside = |at: DVec2| {
         let size = DVec2::new(f64::from(camera.width), f64::from(camera.height));

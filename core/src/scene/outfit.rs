@@ -165,6 +165,10 @@ pub struct Top {
     /// How the cloth is woven: a relief's id in the library; folds alone where absent.
     #[serde(default)]
     pub relief: Option<String>,
+    /// Where its hue is turned and where it shines: a finish's id in the library; the same all over
+    /// where absent.
+    #[serde(default)]
+    pub finish: Option<String>,
     /// Rotation of the hue of the cloth.
     pub hue_offset_deg: f64,
 }
@@ -187,6 +191,10 @@ pub struct Bottom {
     /// How the cloth is woven: a relief's id in the library; folds alone where absent.
     #[serde(default)]
     pub relief: Option<String>,
+    /// Where its hue is turned and where it shines: a finish's id in the library; the same all over
+    /// where absent.
+    #[serde(default)]
+    pub finish: Option<String>,
     /// Rotation of the hue of the cloth.
     pub hue_offset_deg: f64,
 }
@@ -207,6 +215,10 @@ pub struct Outer {
     /// How the cloth is woven: a relief's id in the library; folds alone where absent.
     #[serde(default)]
     pub relief: Option<String>,
+    /// Where its hue is turned and where it shines: a finish's id in the library; the same all over
+    /// where absent.
+    #[serde(default)]
+    pub finish: Option<String>,
     /// Rotation of the hue of the cloth.
     pub hue_offset_deg: f64,
 }

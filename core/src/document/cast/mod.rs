@@ -228,6 +228,8 @@ values! {
         pattern: String,
         /// Id of how the cloth is woven; `"none"` for folds alone.
         relief: String,
+        /// Id of where its hue is turned and where it shines; `"none"` for the same all over.
+        finish: String,
         /// Rotation of the hue of the cloth.
         hue_offset_deg: f64,
     }
@@ -250,6 +252,8 @@ values! {
         pattern: String,
         /// Id of how the cloth is woven; `"none"` for folds alone.
         relief: String,
+        /// Id of where its hue is turned and where it shines; `"none"` for the same all over.
+        finish: String,
         /// Rotation of the hue of the cloth.
         hue_offset_deg: f64,
     }
@@ -270,6 +274,8 @@ values! {
         pattern: String,
         /// Id of how the cloth is woven; `"none"` for folds alone.
         relief: String,
+        /// Id of where its hue is turned and where it shines; `"none"` for the same all over.
+        finish: String,
         /// Rotation of the hue of the cloth.
         hue_offset_deg: f64,
     }

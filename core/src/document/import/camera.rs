@@ -21,9 +21,12 @@ pub(super) fn camera(fields: &mut Fields<'_>, document: &mut Document) {
         (_, None) => {}
     }
     let why = "the camera of PeopleSansPeople is not in physical mode: the focal length changes \
-        its depth of field alone, which is hardly seen and not available here";
+        its depth of field alone";
     fields.left_out("usePhysicalCamera", why);
-    fields.left_out("cameraFocalLengthParameter", why);
+    let focal_length = "camera.depth_of_field.focal_length_mm";
+    if let Some(law) = fields.law("cameraFocalLengthParameter", focal_length) {
+        camera.depth_of_field.focal_length_mm = Some(law.param());
+    }
     let (position, rotation) = ("camera.position_offset_m", "camera.rotation_offset_deg");
     let moves = fields.flag("useMovingCamera").unwrap_or(true);
     let turns = fields.flag("useRotatingCamera").unwrap_or(true);
@@ -69,14 +72,18 @@ pub(super) fn post_process(fields: &mut Fields<'_>, document: &mut Document) {
         |what| format!("{what} is not active in the scene of PeopleSansPeople: no effect");
     fields.left_out("filmGrainIntensityParameter", &inactive("film grain"));
     fields.left_out("lensDistortionIntensityParameter", &inactive("lens distortion"));
-    let focus = "depth of field is hardly seen in PeopleSansPeople and not available here";
-    fields.left_out("focusDistanceParameter", focus);
+    let focus = "camera.depth_of_field.focus_distance_m";
+    if let Some(law) = fields.law("focusDistanceParameter", focus) {
+        document.camera.depth_of_field.focus_distance_m = law.param();
+    }
 }
 
 /// As the seed's scene has it.
 pub(super) fn post_process_off(document: &mut Document) {
     let post = &mut document.post;
     post.exposure_ev = Param::Constant(10.0);
+    document.camera.depth_of_field.focus_distance_m = Param::Constant(3.0);
+    let post = &mut document.post;
     for param in [
         &mut post.vignette,
         &mut post.white_balance_temperature,

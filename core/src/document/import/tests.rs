@@ -140,12 +140,10 @@ fn what_the_seeds_file_says_in_vain_is_noted() {
         at(10, "hueTop"),
         at(10, "hueBottom"),
         at(11, "usePhysicalCamera"),
-        at(11, "cameraFocalLengthParameter"),
         at(13, "useRotatingLight"),
         at(13, "changeLightRotation"),
         at(14, "filmGrainIntensityParameter"),
         at(14, "lensDistortionIntensityParameter"),
-        at(14, "focusDistanceParameter"),
     ];
     let paths: Vec<&str> = notes.iter().map(|n| n.path.as_str()).collect();
     assert_eq!(paths, expected, "{notes:#?}");

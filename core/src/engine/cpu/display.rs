@@ -51,10 +51,7 @@ fn encode_body<const AVX2: bool>(
 
 /// Eight pixels of linear display light as bytes, with noise in 1/255.
 #[inline(always)]
-pub(super) fn bytes<const AVX2: bool>(
-    color: Vec3x8<AVX2>,
-    noise: F32x8<AVX2>,
-) -> [[u8; 3]; LANES] {
+pub(super) fn bytes<const AVX2: bool>(color: Vec3x8<AVX2>, noise: F32x8<AVX2>) -> [[u8; 3]; LANES] {
     let (red, green, blue) = (byte(color.x, noise), byte(color.y, noise), byte(color.z, noise));
     let pixels = red | (green << 8) | (blue << 16);
     let mut out = [[0; 3]; LANES];

@@ -312,7 +312,8 @@ impl Buffers {
             chunks: self.visible.as_slice(),
             by_tile: self.visible.by_tile(),
             shading: shades.then(|| {
-                let develop = if Optics::wanted(list, plan) { Develop::keep() } else { Develop::new(list) };
+                let develop =
+                    if Optics::wanted(list, plan) { Develop::keep() } else { Develop::new(list) };
                 shading(list, self.visible.as_slice(), &self.placed, shadow, develop)
             }),
             resolves,

@@ -225,7 +225,8 @@ fn develop_row_body<const AVX2: bool>(
         Vec3x8::new(r, g, b)
     };
     let noisy = Develop::is_noisy(grade);
-    let (sensor_key, grain_key) = (noise::sensor_key(grade.grain_key), noise::mixed(grade.grain_key));
+    let (sensor_key, grain_key) =
+        (noise::sensor_key(grade.grain_key), noise::mixed(grade.grain_key));
     let mut x = 0;
     for eight in line.chunks_mut(3 * LANES) {
         let mut light = load(&light, x);

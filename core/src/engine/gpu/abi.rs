@@ -194,6 +194,9 @@ pub struct Surface {
     pub map_info: u32,
     pub flags: u32,
     pub own_blockers: [u32; 2],
+    pub finish_first: u32,
+    pub finish_info: u32,
+    pub pad: [u32; 2],
     pub layers: [[u32; 2]; 4],
 }
 

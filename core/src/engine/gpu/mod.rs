@@ -60,13 +60,13 @@ use self::abi::{Bounds, Counters, LARGE_ROOM, MAX_LAMPS, ObjectSums, Primitive};
 use self::buffers::Buffers;
 use self::device::Device;
 use self::lens::Lens;
+use self::optics::Optics;
 use self::pack::{Packed, Places, Wanted};
 use self::pool::Pool;
 use self::present::Presenter;
 use self::readback::{Band, Counted, Readback};
 use self::record::{Clock, Recorder};
 use self::stage::{Resource, Stage};
-use self::optics::Optics;
 use self::variant::{Light, Variant};
 use super::{Engine, EngineError, input, resized};
 use crate::draw::DrawList;
@@ -456,9 +456,8 @@ impl State {
         self.readback.wait(&self.device)?;
         let waited = start.elapsed();
         let mut ticks = [0; 2 * Stage::ALL.len()];
-        let counted = times.measure("copy back", || {
-            self.readback.take(&self.device, band, frame, &mut ticks)
-        })?;
+        let counted = times
+            .measure("copy back", || self.readback.take(&self.device, band, frame, &mut ticks))?;
         match &self.clock {
             Some(clock) => clock.report(&ticks, waited, times),
             None => times.add("wait for the device", waited),

@@ -353,6 +353,9 @@ fn surface(material: &Material, list: &DrawList, textures: &[u32], object: u32) 
             let own = &list.objects[object as usize].blockers;
             [own.start, own.end]
         },
+        finish_first: material.finish_map.map_or(0, |i| textures[i as usize]),
+        finish_info: material.finish_map.map_or(0, |i| info(&list.textures[i as usize])),
+        pad: [0; 2],
         layers: material.layers.map(pairs),
     }
 }

@@ -42,6 +42,7 @@ fn outfit(i: usize, x: f64) -> Outfit {
             color,
             texture: None,
             relief: None,
+            finish: None,
             hue_offset_deg,
         },
         bottom: Bottom {
@@ -52,6 +53,7 @@ fn outfit(i: usize, x: f64) -> Outfit {
             color,
             texture: None,
             relief: None,
+            finish: None,
             hue_offset_deg,
         },
         outer: Outer {
@@ -61,6 +63,7 @@ fn outfit(i: usize, x: f64) -> Outfit {
             color,
             texture,
             relief: None,
+            finish: None,
             hue_offset_deg,
         },
         shoes: Shoes {

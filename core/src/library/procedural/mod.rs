@@ -9,6 +9,7 @@ mod cloth;
 mod detail;
 mod dice;
 mod field;
+mod finish;
 mod goods;
 mod letters;
 mod pattern;
@@ -48,6 +49,8 @@ pub(super) enum Kind {
     Detail,
     /// How cloth is woven, plain numbers with a normal map.
     Relief,
+    /// Where the hue of cloth is turned and where it shines, plain numbers.
+    Finish,
 }
 
 /// A generator with its number of variants.
@@ -74,6 +77,10 @@ const fn cloth(name: &'static str, variants: u32, paint: fn(&mut Dice) -> Painti
 
 const fn woven(name: &'static str, paint: fn(&mut Dice) -> Painting) -> Family {
     Family { kind: Kind::Relief, name, variants: 2, relief: true, paint }
+}
+
+const fn finished(name: &'static str, paint: fn(&mut Dice) -> Painting) -> Family {
+    Family { kind: Kind::Finish, name, variants: 2, relief: false, paint }
 }
 
 const fn detail(name: &'static str, paint: fn(&mut Dice) -> Painting) -> Family {
@@ -163,6 +170,24 @@ const RELIEFS: [Family; 16] = [
     woven("waffle", relief::waffle),
 ];
 
+/// Where the hue of cloth is turned and where it shines.
+const FINISHES: [Family; 14] = [
+    finished("acid", finish::acid),
+    finished("blocks", finish::blocks),
+    finished("brocade", finish::brocade),
+    finished("crackle", finish::crackle),
+    finished("damask", finish::damask),
+    finished("dip", finish::dip),
+    finished("foil", finish::foil),
+    finished("moire", finish::moire),
+    finished("panels", finish::panels),
+    finished("satin", finish::satin),
+    finished("splash", finish::splash),
+    finished("tie", finish::tie),
+    finished("waxed", finish::waxed),
+    finished("zigzag", finish::zigzag),
+];
+
 impl Kind {
     const fn prefix(self) -> &'static str {
         match self {
@@ -170,13 +195,14 @@ impl Kind {
             Self::Cloth => "cloth",
             Self::Detail => "detail",
             Self::Relief => "relief",
+            Self::Finish => "finish",
         }
     }
 
     const fn encoding(self) -> Encoding {
         match self {
             Self::Procedural | Self::Cloth => Encoding::Color,
-            Self::Detail | Self::Relief => Encoding::Linear,
+            Self::Detail | Self::Relief | Self::Finish => Encoding::Linear,
         }
     }
 }
@@ -195,7 +221,7 @@ impl Family {
 }
 
 fn families() -> impl Iterator<Item = &'static Family> {
-    FAMILIES.iter().chain(&DETAILS).chain(&RELIEFS)
+    FAMILIES.iter().chain(&DETAILS).chain(&RELIEFS).chain(&FINISHES)
 }
 
 /// All ids of a kind, in order.
@@ -311,6 +337,7 @@ mod tests {
         assert!(sorted(ids(Kind::Procedural)) > 100);
         assert!(sorted(ids(Kind::Cloth)) > 40);
         assert!(sorted(ids(Kind::Relief)) >= 28);
+        assert!(sorted(ids(Kind::Finish)) >= 28);
         assert!(sorted(normal_ids()) > 25);
         assert_eq!(
             ids(Kind::Detail),

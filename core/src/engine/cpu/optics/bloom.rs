@@ -124,11 +124,7 @@ kernel! {
 }
 
 #[inline(always)]
-fn drawn_out_body<const AVX2: bool>(
-    [near, far]: [&[f32]; 2],
-    width: usize,
-    out: &mut [f32],
-) {
+fn drawn_out_body<const AVX2: bool>([near, far]: [&[f32]; 2], width: usize, out: &mut [f32]) {
     let of = |x: usize| near[x] * 0.75 + far[x] * 0.25;
     let (near, far) = (&near[..width], &far[..width]);
     let between = |a: f32, b: f32| a * 0.75 + b * 0.25;

@@ -18,9 +18,9 @@ use crate::engine::optics::{blur_level, level_size};
 const BORDER: usize = 8;
 /// What light in focus has of its texel beyond the focus: next to nothing, so that what is sharp does
 /// not colour what is blurred beside it, but enough where there is nothing else.
-const SHARP_SHARE: f32 = 0.01;
+const SHARP_SHARE: f32 = 0.001;
 /// Less than this is nothing.
-const LEAST_SHARE: f32 = 1e-5;
+const LEAST_SHARE: f32 = 1e-7;
 /// Side of the squares of texels that know the widest disk in them.
 const SQUARE: usize = 16;
 
@@ -91,7 +91,8 @@ impl Buffers {
         let stride = self.spread.stride;
         self.spread.chunks_mut(ROWS).into_par_iter().enumerate().for_each(|(chunk, mut rows)| {
             let tall = rows[0].len() / stride;
-            for (row, first) in (0..tall).flat_map(|y| (0..width).step_by(SQUARE).map(move |x| (y, x)))
+            for (row, first) in
+                (0..tall).flat_map(|y| (0..width).step_by(SQUARE).map(move |x| (y, x)))
             {
                 let y = chunk * ROWS + row;
                 let reach = layers.reach([first, y]);
@@ -300,24 +301,31 @@ fn compose(
 ) {
     let stride = blur.stride;
     let per_unit = 1.0 / (1 << halvings) as f32;
+    // Between two rows of texels.
+    let mut around: [Vec<f32>; 7] = std::array::from_fn(|_| vec![0.0; spread.stride]);
     for row in 0..light[0].len() / stride {
         let y = first_y + row;
         let (top, bottom, down) = between(y, per_unit, spread.size[1]);
-        let (top, bottom) = (spread.row(top), spread.row(bottom));
+        for ((to, top), bottom) in around.iter_mut().zip(spread.row(top)).zip(spread.row(bottom)) {
+            for ((to, above), below) in to.iter_mut().zip(top).zip(bottom) {
+                *to = above + (below - above) * down;
+            }
+        }
         let [radii_px] = blur.row(y);
-        for x in 0..blur.size[0] {
+        for (x, radius_px) in radii_px[..blur.size[0]].iter().enumerate() {
             let (left, right, along) = between(x, per_unit, spread.size[0]);
             let of = |plane: usize| {
-                let mix = |row: &[f32]| row[left] + (row[right] - row[left]) * along;
-                let (above, below) = (mix(top[plane]), mix(bottom[plane]));
-                above + (below - above) * down
+                let plane = &around[plane];
+                plane[left] + (plane[right] - plane[left]) * along
             };
-            let out = blurred_share(radii_px[x] * per_unit);
-            let seen = 1.0 - of(3);
+            let (out, covered) = (blurred_share(radius_px * per_unit), of(3));
+            if out == 0.0 && covered == 0.0 {
+                continue;
+            }
             for (channel, plane) in light.iter_mut().enumerate() {
                 let sharp = &mut plane[row * stride + x];
                 let behind = *sharp + (of(channel) - *sharp) * out;
-                *sharp = behind * seen + of(4 + channel);
+                *sharp = behind * (1.0 - covered) + of(4 + channel);
             }
         }
     }

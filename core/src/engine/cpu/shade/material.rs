@@ -19,6 +19,7 @@ pub(in crate::engine::cpu) struct Surface<'a> {
     roughness: f32,
     pub(super) metallic: f32,
     normal_map: Option<(Sampler<'a>, f32)>,
+    finish: Option<Sampler<'a>>,
     mask: Option<Sampler<'a>>,
     layers: [[f32; 4]; 4],
     pub(super) wrap: f32,
@@ -47,8 +48,11 @@ impl<'a> Surface<'a> {
         let turn = material.hue_offset_deg / 60.0;
         let hue_offset = (turn != 0.0).then(|| turn - 6.0 * (turn / 6.0).floor());
         let albedo_map = sampler(material.albedo_map);
+        let finish = sampler(material.finish_map);
+        // Where all of a plain colour is turned, that is done here.
+        let hue_varies = albedo_map.is_some() || finish.is_some();
         let mut base_color = material.base_color;
-        if let (Some(turn), None) = (hue_offset, &albedo_map) {
+        if let (Some(turn), false) = (hue_offset, hue_varies) {
             let rotated = rotate_hue(Vec3x8::<false>::splat(base_color), turn);
             base_color = [rotated.x.0[0], rotated.y.0[0], rotated.z.0[0]];
         }
@@ -56,7 +60,8 @@ impl<'a> Surface<'a> {
             base_color,
             detail: sampler(material.detail_map).map(|s| (s, material.detail_strength)),
             uv_repeat: material.uv_repeat,
-            hue_offset: hue_offset.filter(|_| albedo_map.is_some()),
+            hue_offset: hue_offset.filter(|_| hue_varies),
+            finish,
             albedo_map,
             roughness: material.roughness.clamp(0.04, 1.0),
             metallic: material.metallic.clamp(0.0, 1.0),
@@ -75,6 +80,7 @@ impl<'a> Surface<'a> {
             coordinates: self.albedo_map.is_some()
                 || self.detail.is_some()
                 || self.normal_map.is_some()
+                || self.finish.is_some()
                 || self.mask.is_some(),
             directions: self.normal_map.is_some(),
         }
@@ -100,10 +106,14 @@ impl<'a> Surface<'a> {
         }
     }
 
-    /// Albedo, detail and normal map, which share the repeated coordinates.
+    /// Albedo, finish, detail and normal map, which share the repeated coordinates.
     #[inline(always)]
     fn apply_repeated<const AVX2: bool>(&self, points: &[Points<AVX2>], looks: &mut [Look<AVX2>]) {
-        if self.albedo_map.is_none() && self.detail.is_none() && self.normal_map.is_none() {
+        let none = self.albedo_map.is_none()
+            && self.detail.is_none()
+            && self.normal_map.is_none()
+            && self.finish.is_none();
+        if none {
             return;
         }
         let repeat = [F32x8::splat(self.uv_repeat[0]), F32x8::splat(self.uv_repeat[1])];
@@ -118,10 +128,18 @@ impl<'a> Surface<'a> {
                 let [r, g, b] = map.sample::<AVX2, 3>(*uv, *size);
                 look.albedo = look.albedo * Vec3x8::new(r, g, b);
             }
-            if let Some(turn) = self.hue_offset {
-                for look in looks.iter_mut() {
-                    look.albedo = rotate_hue(look.albedo, turn);
+        }
+        if let Some(map) = &self.finish {
+            for (look, (uv, size)) in looks.iter_mut().zip(&places) {
+                let [turned, gloss] = map.sample::<AVX2, 2>(*uv, *size);
+                if let Some(turn) = self.hue_offset {
+                    look.albedo = look.albedo.mix(rotate_hue(look.albedo, turn), turned);
                 }
+                look.roughness = look.roughness.mix(F32x8::splat(Material::GLOSSY), gloss);
+            }
+        } else if let Some(turn) = self.hue_offset {
+            for look in looks.iter_mut() {
+                look.albedo = rotate_hue(look.albedo, turn);
             }
         }
         if let Some((map, strength)) = &self.detail {

@@ -8,7 +8,7 @@ use wgpu::naga::valid::{ValidationFlags, Validator};
 use wgpu::naga::{AddressSpace, Module, StorageAccess, TypeInner};
 
 use super::*;
-use crate::draw::abi::MAX_BLOCKERS;
+use crate::draw::abi::{MAX_BLOCKERS, Material};
 use crate::engine::gpu::abi;
 
 fn modules() -> impl Iterator<Item = (String, Stage, Module)> {
@@ -164,18 +164,14 @@ fn shared_structs_are_laid_out_alike() {
             map_info,
             flags,
             own_blockers,
+            finish_first,
+            finish_info,
+            pad,
             layers,
         }),
         layout!(Blocker { center, radius_m }),
         layout!(Light { position, per_range_m2, color_cd, per_radius_m }),
-        layout!(Step {
-            larger_first,
-            smaller_first,
-            larger_size,
-            smaller_size,
-            pad0,
-            pad1,
-        }),
+        layout!(Step { larger_first, smaller_first, larger_size, smaller_size, pad0, pad1 }),
         layout!(ObjectSums { count, low, high }),
     ];
     let shared = module.types.iter().filter_map(|(handle, t)| match &t.inner {
@@ -225,6 +221,8 @@ fn shared_constants_are_the_same() {
     assert!(split.contains(&format!("array<array<u32, {}>>", abi::LAYER_WORDS)));
     assert_eq!(abi::LIGHT_OF_PIXELS, u32::MAX);
     assert!(text.contains("const NOTHING: u32 = 0xffffffffu;"));
+    let material = include_str!("../../../../../shaders/shared/material.wgsl");
+    assert!(material.contains(&format!("const GLOSSY: f32 = {};", Material::GLOSSY)));
     let skin = include_str!("../../../../../shaders/skin.wgsl");
     assert!(skin.contains(&format!("const VERTEX_WORDS: u32 = {}u;", abi::VERTEX_WORDS)));
     let header = size_of::<abi::SunView>() / 4;
