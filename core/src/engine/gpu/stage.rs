@@ -17,6 +17,49 @@ macro_rules! file {
     };
 }
 
+/// What stands at the bindings of shading: what it writes, and what more it reads.
+macro_rules! shading {
+    ($written:ident $(, $more:ident)?) => {
+        &[
+            (R::Frame, Uniform),
+            (R::Target, Uniform),
+            (R::Primitives, Read),
+            (R::Surfaces, Read),
+            (R::Vertices, Read),
+            (R::Samples, Read),
+            (R::Texels, Read),
+            (R::Lights, Uniform),
+            (R::SunView, Uniform),
+            (R::ShadowMap, Read),
+            (R::$written, Write),
+            (R::Blockers, Uniform),
+            $((R::$more, Read),)?
+        ]
+    };
+}
+
+/// The files of shading, with the one that knows rays through pixels.
+macro_rules! shading_files {
+    ($rays:literal) => {
+        &[
+            ABI,
+            file!("shared/texture.wgsl"),
+            file!($rays),
+            NORMAL,
+            file!("shared/surface.wgsl"),
+            file!("shared/material.wgsl"),
+            file!("shared/sunlight.wgsl"),
+            file!("shared/environment.wgsl"),
+            file!("shared/blockers.wgsl"),
+            file!("shared/light.wgsl"),
+            file!("shared/develop.wgsl"),
+            file!("shared/display.wgsl"),
+            LIGHT_OF_PIXELS,
+            file!("shade.wgsl"),
+        ]
+    };
+}
+
 /// A buffer that stages read or write.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Resource {
@@ -356,64 +399,10 @@ impl Stage {
                 (R::Samples, Read),
                 (R::Sums, Write),
             ],
-            Self::Shade => &[
-                (R::Frame, Uniform),
-                (R::Target, Uniform),
-                (R::Primitives, Read),
-                (R::Surfaces, Read),
-                (R::Vertices, Read),
-                (R::Samples, Read),
-                (R::Texels, Read),
-                (R::Lights, Uniform),
-                (R::SunView, Uniform),
-                (R::ShadowMap, Read),
-                (R::Picture, Write),
-                (R::Blockers, Uniform),
-            ],
-            Self::LensShade => &[
-                (R::Frame, Uniform),
-                (R::Target, Uniform),
-                (R::Primitives, Read),
-                (R::Surfaces, Read),
-                (R::Vertices, Read),
-                (R::Samples, Read),
-                (R::Texels, Read),
-                (R::Lights, Uniform),
-                (R::SunView, Uniform),
-                (R::ShadowMap, Read),
-                (R::Picture, Write),
-                (R::Blockers, Uniform),
-                (R::Rays, Read),
-            ],
-            Self::KeepLight => &[
-                (R::Frame, Uniform),
-                (R::Target, Uniform),
-                (R::Primitives, Read),
-                (R::Surfaces, Read),
-                (R::Vertices, Read),
-                (R::Samples, Read),
-                (R::Texels, Read),
-                (R::Lights, Uniform),
-                (R::SunView, Uniform),
-                (R::ShadowMap, Read),
-                (R::Light, Write),
-                (R::Blockers, Uniform),
-            ],
-            Self::LensKeepLight => &[
-                (R::Frame, Uniform),
-                (R::Target, Uniform),
-                (R::Primitives, Read),
-                (R::Surfaces, Read),
-                (R::Vertices, Read),
-                (R::Samples, Read),
-                (R::Texels, Read),
-                (R::Lights, Uniform),
-                (R::SunView, Uniform),
-                (R::ShadowMap, Read),
-                (R::Light, Write),
-                (R::Blockers, Uniform),
-                (R::Rays, Read),
-            ],
+            Self::Shade => shading!(Picture),
+            Self::LensShade => shading!(Picture, Rays),
+            Self::KeepLight => shading!(Light),
+            Self::LensKeepLight => shading!(Light, Rays),
             Self::Split => {
                 &[(R::Frame, Uniform), (R::Light, Read), (R::Layers, Write), (R::Widest, Write)]
             }
@@ -502,38 +491,8 @@ impl Stage {
                 file!("shared/display.wgsl"),
                 file!("finish.wgsl"),
             ],
-            Self::Shade | Self::KeepLight => &[
-                ABI,
-                file!("shared/texture.wgsl"),
-                file!("shared/ray.wgsl"),
-                NORMAL,
-                file!("shared/surface.wgsl"),
-                file!("shared/material.wgsl"),
-                file!("shared/sunlight.wgsl"),
-                file!("shared/environment.wgsl"),
-                file!("shared/blockers.wgsl"),
-                file!("shared/light.wgsl"),
-                file!("shared/develop.wgsl"),
-                file!("shared/display.wgsl"),
-                LIGHT_OF_PIXELS,
-                file!("shade.wgsl"),
-            ],
-            Self::LensShade | Self::LensKeepLight => &[
-                ABI,
-                file!("shared/texture.wgsl"),
-                file!("shared/lens_ray.wgsl"),
-                NORMAL,
-                file!("shared/surface.wgsl"),
-                file!("shared/material.wgsl"),
-                file!("shared/sunlight.wgsl"),
-                file!("shared/environment.wgsl"),
-                file!("shared/blockers.wgsl"),
-                file!("shared/light.wgsl"),
-                file!("shared/develop.wgsl"),
-                file!("shared/display.wgsl"),
-                LIGHT_OF_PIXELS,
-                file!("shade.wgsl"),
-            ],
+            Self::Shade | Self::KeepLight => shading_files!("shared/ray.wgsl"),
+            Self::LensShade | Self::LensKeepLight => shading_files!("shared/lens_ray.wgsl"),
         }
     }
 }
