@@ -5,8 +5,9 @@
 
 use std::collections::BTreeMap;
 
+use super::SHARE;
+use super::people::{AGE_YEARS, BMI_KG_M2, MAX_IDENTITIES, STATURE_M};
 use super::rules::{Check, Range};
-use super::{MAX_IDENTITIES, SHARE};
 use crate::document::cast::{FixedColor, FixedColorOther, Member, MemberBody, MemberLook};
 use crate::document::{People, Problem};
 
@@ -137,9 +138,9 @@ fn body(c: &mut Check, path: &str, body: &MemberBody) {
         firmness,
     } = body;
     let all = [
-        ("age_years", *age_years, super::AGE_YEARS),
-        ("stature_m", *stature_m, super::STATURE_M),
-        ("bmi_kg_m2", *bmi_kg_m2, super::BMI_KG_M2),
+        ("age_years", *age_years, AGE_YEARS),
+        ("stature_m", *stature_m, STATURE_M),
+        ("bmi_kg_m2", *bmi_kg_m2, BMI_KG_M2),
         ("muscle", *muscle, SHARE),
         ("proportions", *proportions, SHARE),
         ("cup", *cup, SHARE),
@@ -147,7 +148,7 @@ fn body(c: &mut Check, path: &str, body: &MemberBody) {
     ];
     numbers(c, path, &all);
     if let Some(shares) = ancestry {
-        super::shares(c, &format!("{path}.ancestry"), shares);
+        super::people::shares(c, &format!("{path}.ancestry"), shares);
     }
 }
 
