@@ -157,7 +157,7 @@ fn psnr(a: &[f64], b: &[f64]) -> f64 {
 fn blur_is_near_that_of_many_pinholes() {
     let list = three_distances();
     let sharp = light(&render(&list, &[Output::Rgb]));
-    for (infinity_px, least_db) in [(2.0, 33.0), (4.5, 31.0), (9.0, 29.0)] {
+    for (infinity_px, least_db) in [(2.0, 44.0), (4.5, 40.0), (9.0, 36.0)] {
         let mut list = list.clone();
         let defocus =
             Defocus { focus_m: 2.6, at_infinity_px: infinity_px, largest_px: infinity_px };
@@ -166,7 +166,7 @@ fn blur_is_near_that_of_many_pinholes() {
         let got = psnr(&light(&render(&list, &[Output::Rgb])), &truth);
         let without = psnr(&sharp, &truth);
         println!("{infinity_px} px: {got:.1} dB, without blur {without:.1} dB");
-        assert!(got > least_db && got > without + 4.0, "{infinity_px}: {got:.1}, {without:.1} dB");
+        assert!(got > least_db && got > without + 8.0, "{infinity_px}: {got:.1}, {without:.1} dB");
     }
 }
 
