@@ -26,6 +26,17 @@ const SETTINGS: &[(&str, SimdChoice, Change)] = &[
     ("shadow map 1024", SimdChoice::Auto, |d| d.quality.shadow_map_size = 1024),
     ("detail to 1 px", SimdChoice::Auto, |d| d.quality.lod_error_px = 1.0),
     ("detail to 0.05 px", SimdChoice::Auto, |d| d.quality.lod_error_px = 0.05),
+    ("no bloom", SimdChoice::Auto, |d| d.post.bloom = 0.0.into()),
+    ("out of focus, f/2", SimdChoice::Auto, |d| {
+        let blur = &mut d.camera.depth_of_field;
+        (blur.f_number, blur.focus_distance_m) = (2.0.into(), 8.0.into());
+        blur.focal_length_mm = None;
+    }),
+    ("1 sample, no sun, no effects of the lens", SimdChoice::Auto, |d| {
+        d.labels.samples = 1;
+        d.lights.sun.enabled = false;
+        (d.post.enabled, d.camera.depth_of_field.enabled) = (false, false);
+    }),
     ("labels without a picture", SimdChoice::Auto, |d| {
         d.output.outputs.remove(&Output::Rgb);
     }),
