@@ -1,6 +1,9 @@
-//! What both engines know of light that leaves its pixel: at which size it is spread.
+//! What both engines know of light that leaves its pixel: whether a frame has any, and at which size
+//! it is spread. How it is spread is each engine's own.
 
-use crate::draw::abi::Defocus;
+use crate::draw::DrawList;
+use crate::draw::abi::{Bloom, Defocus};
+use crate::plan::{Pass, PassPlan};
 
 /// Largest radius over which light out of focus is gathered, texels.
 const MOST_TEXELS: f32 = 8.0;
@@ -8,6 +11,22 @@ const MOST_TEXELS: f32 = 8.0;
 const MOST_LEVELS: usize = 12;
 /// Texels of the larger side that a level has at least.
 const LEAST_SIDE: u32 = 4;
+
+/// Light out of focus, where a frame's plan spreads it.
+pub(super) fn blurs(list: &DrawList, plan: &PassPlan) -> Option<Defocus> {
+    list.defocus.filter(|_| plan.runs(Pass::Defocus))
+}
+
+/// Scattered light, where a frame's plan scatters it.
+pub(super) fn scatters(list: &DrawList, plan: &PassPlan) -> Option<Bloom> {
+    list.grade.bloom.filter(|_| plan.runs(Pass::Bloom))
+}
+
+/// Whether a frame's light is kept, to be developed by the pixel once all of it is known.
+pub(super) fn keeps_light(list: &DrawList, plan: &PassPlan) -> bool {
+    let spreads = blurs(list, plan).is_some() || scatters(list, plan).is_some();
+    plan.runs(Pass::Display) && spreads
+}
 
 /// How often the picture is halved before light out of focus is gathered, so that no disk is wider
 /// than what is looked at.

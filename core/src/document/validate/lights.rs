@@ -1,4 +1,4 @@
-//! Lights.
+//! Lights: what of sun, lamps and surroundings makes sense, each field by its path.
 
 use super::rules::{Check, Range};
 use super::{ANGLE, POSITION};

@@ -1,4 +1,5 @@
-//! People: their bodies, looks, clothes and poses.
+//! People: what of their bodies, looks, clothes, poses and seats makes sense. Listed people are the
+//! business of [`super::cast`].
 
 use super::rules::{Check, Range};
 use super::{ANGLE, MAX_PEOPLE, SHARE, cast, placement};

@@ -1,4 +1,4 @@
-//! The picture's size, the camera, and what happens behind its lens.
+//! The picture's size, the camera, and what happens behind its lens: what of it makes sense.
 
 use super::rules::{Check, Range};
 use super::{ANGLE, MAX_SIDE, POSITION, SHARE};

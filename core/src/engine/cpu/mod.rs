@@ -56,6 +56,7 @@ use self::shadow::map::{ShadowMap, SunShadow};
 use self::shadow::{Bounds, ShadowView, SunAxes};
 use self::simd::Level;
 use self::tile::{Row, Scratch, Shading, TilePass};
+use super::optics::keeps_light;
 use super::{Engine, EngineError, input, resized};
 use crate::draw::DrawList;
 use crate::plan::{Frame, ObjectSamples, Pass, PassPlan, StageTimes};
@@ -313,13 +314,13 @@ impl Buffers {
             by_tile: self.visible.by_tile(),
             shading: shades.then(|| {
                 let develop =
-                    if Optics::wanted(list, plan) { Develop::keep() } else { Develop::new(list) };
+                    if keeps_light(list, plan) { Develop::keep() } else { Develop::new(list) };
                 shading(list, self.visible.as_slice(), &self.placed, shadow, develop)
             }),
             resolves,
             reduces,
         };
-        let keeps = Optics::wanted(list, plan);
+        let keeps = keeps_light(list, plan);
         let light = if keeps { self.optics.begin(list, plan) } else { Vec::new() };
         let scratches = &self.scratches;
         let used = Mutex::new(Vec::new());

@@ -24,7 +24,8 @@ use super::simd::{F32x8, LANES, Level, Vec3x8, kernel};
 use crate::draw::DrawList;
 use crate::draw::abi::{Bloom, Grade};
 use crate::engine::noise;
-use crate::plan::{Pass, PassPlan, StageTimes};
+use crate::engine::optics::{blurs, scatters};
+use crate::plan::{PassPlan, StageTimes};
 
 /// Rows that a thread takes at a time.
 const ROWS: usize = 16;
@@ -88,16 +89,11 @@ pub(super) struct LightRow<'a> {
 }
 
 impl Optics {
-    /// Whether a frame's light is kept.
-    pub(super) fn wanted(list: &DrawList, plan: &PassPlan) -> bool {
-        plan.runs(Pass::Display) && (blurs(list, plan) || scatters(list, plan).is_some())
-    }
-
     /// Makes room for a frame; hands out what each row of tiles fills.
     pub(super) fn begin(&mut self, list: &DrawList, plan: &PassPlan) -> Vec<LightRow<'_>> {
         let size = [list.view.width, list.view.height];
         self.light.resize(size);
-        self.blur.resize(if blurs(list, plan) { size } else { [0; 2] });
+        self.blur.resize(if blurs(list, plan).is_some() { size } else { [0; 2] });
         let stride = self.light.stride;
         let mut blur = self.blur.chunks_mut(TILE).into_iter();
         let rows = self.light.chunks_mut(TILE).into_iter();
@@ -117,7 +113,7 @@ impl Optics {
         picture: &mut [u8],
         times: &mut StageTimes,
     ) {
-        if let Some(defocus) = list.defocus.filter(|_| blurs(list, plan)) {
+        if let Some(defocus) = blurs(list, plan) {
             times.measure("depth of field", || {
                 self.defocus.spread(level, &defocus, &mut self.light, &self.blur);
             });
@@ -142,14 +138,6 @@ impl Optics {
             });
         });
     }
-}
-
-fn blurs(list: &DrawList, plan: &PassPlan) -> bool {
-    list.defocus.is_some() && plan.runs(Pass::Defocus)
-}
-
-fn scatters(list: &DrawList, plan: &PassPlan) -> Option<Bloom> {
-    list.grade.bloom.filter(|_| plan.runs(Pass::Bloom))
 }
 
 impl LightRow<'_> {

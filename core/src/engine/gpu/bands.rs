@@ -8,7 +8,6 @@ use std::time::Instant;
 use super::State;
 use super::abi::{self, Primitive};
 use super::lens;
-use super::optics::Optics;
 use super::pack::{self, Packed};
 use super::readback::{Band, Counted};
 use super::record::Recorder;
@@ -16,6 +15,7 @@ use super::stage::{Resource, Stage};
 use super::variant::{Light, Variant};
 use crate::draw::DrawList;
 use crate::engine::EngineError;
+use crate::engine::optics::keeps_light;
 use crate::plan::{Delivery, Frame, Pass, PassPlan, Skipped, StageTimes};
 
 /// Rows of pixels that a device which takes turns is given at a time.
@@ -32,7 +32,7 @@ impl State {
         times: &mut StageTimes,
     ) -> Result<bool, EngineError> {
         let rows = self.band_rows(list)?;
-        let keeps = Optics::wanted(list, plan);
+        let keeps = keeps_light(list, plan);
         self.make_room(list, rows, keeps)?;
         self.optics.make_room(&self.device, &mut self.buffers, list, plan)?;
         // Pictures of light that is kept are made once all of it is there.

@@ -67,6 +67,7 @@ use self::present::Presenter;
 use self::readback::{Counted, Readback};
 use self::record::Clock;
 use self::stage::Resource;
+use super::optics::scatters;
 use super::{Engine, EngineError, input, resized};
 use crate::draw::DrawList;
 use crate::draw::abi::MAX_BLOCKERS;
@@ -304,6 +305,9 @@ impl State {
         })?;
         times.measure("pack", || {
             self.packed.fill(list, &wanted, shadow, &places);
+            if scatters(list, plan).is_none() {
+                self.packed.frame.bloom_share = 0.0;
+            }
             self.write(list, shadow)
         })
     }

@@ -6,8 +6,8 @@ use super::device::Device;
 use super::stage::Resource;
 use crate::draw::DrawList;
 use crate::engine::EngineError;
-use crate::engine::optics::{bloom_levels, blur_level, level_size};
-use crate::plan::{Pass, PassPlan};
+use crate::engine::optics::{bloom_levels, blur_level, blurs, keeps_light, level_size, scatters};
+use crate::plan::PassPlan;
 
 /// What is known of them.
 #[derive(Default)]
@@ -17,13 +17,6 @@ pub struct Optics {
 }
 
 impl Optics {
-    /// Whether a frame's light is kept.
-    pub fn wanted(list: &DrawList, plan: &PassPlan) -> bool {
-        let blurs = list.defocus.is_some() && plan.runs(Pass::Defocus);
-        let scatters = list.grade.bloom.is_some() && plan.runs(Pass::Bloom);
-        plan.runs(Pass::Display) && (blurs || scatters)
-    }
-
     /// Makes room for a frame.
     pub fn make_room(
         &mut self,
@@ -33,13 +26,13 @@ impl Optics {
         plan: &PassPlan,
     ) -> Result<(), EngineError> {
         self.steps.clear();
-        if !Self::wanted(list, plan) {
+        if !keeps_light(list, plan) {
             return Ok(());
         }
         let size = [list.view.width, list.view.height];
         let texels = |[w, h]: [u32; 2]| u64::from(w) * u64::from(h);
         buffers.ensure(device, Resource::Light, texels(size) * 8)?;
-        if let Some(defocus) = list.defocus.filter(|_| plan.runs(Pass::Defocus)) {
+        if let Some(defocus) = blurs(list, plan) {
             let layer = level_size(size, blur_level(&defocus));
             let words = u64::from(LAYER_WORDS);
             buffers.ensure(device, Resource::Layers, texels(layer) * words * 4)?;
@@ -48,7 +41,7 @@ impl Optics {
             buffers.ensure(device, Resource::Gathered, texels(layer) * 16)?;
         }
         let mut scattered = 0;
-        if list.grade.bloom.is_some() && plan.runs(Pass::Bloom) {
+        if scatters(list, plan).is_some() {
             let (mut larger_first, mut larger_size) = (LIGHT_OF_PIXELS, size);
             for smaller_size in bloom_levels(size) {
                 let smaller_first = scattered as u32;
