@@ -99,6 +99,14 @@ impl Texture {
         Self::from_level0(log2_size, encoding, level0)
     }
 
+    /// The texture without its finest level; one texel stays as it is.
+    #[must_use]
+    pub fn halved(self) -> Self {
+        let Some(log2_size) = self.log2_size.checked_sub(1) else { return self };
+        let texels = self.texels[Self::level_offset(self.log2_size, 1)..].into();
+        Self { log2_size, encoding: self.encoding, texels }
+    }
+
     /// Bytes that the texels occupy.
     #[must_use]
     pub fn size_bytes(&self) -> usize {
@@ -295,6 +303,14 @@ fn weighted(weights: &[f32], pixels: &[[f32; 4]]) -> [f32; 4] {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn halved_is_what_the_other_levels_are() {
+        let whole = Texture::from_level0(1, Encoding::Linear, vec![0, 4, 8, 16]);
+        let half = whole.halved();
+        assert_eq!((half.log2_size, &half.texels[..]), (0, &[7][..]));
+        assert_eq!(half.clone().halved(), half);
+    }
     use crate::base::color::srgb_from_linear;
 
     fn texel(texture: &Texture, level: u32, x: usize, y: usize) -> u32 {
