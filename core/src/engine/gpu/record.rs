@@ -158,6 +158,7 @@ impl Recorder<'_> {
     /// Makes the picture of the light that all bands left.
     pub fn optics(&mut self, plan: &PassPlan, frame: &Frame, steps: &[Step]) {
         let squares = |[w, h]: [u32; 2]| [w.div_ceil(SIDE), h.div_ceil(SIDE), 1];
+        let by_four = |[w, h]: [u32; 2]| squares([w.div_ceil(2), h.div_ceil(2)]);
         if plan.runs(Pass::Defocus) && frame.blur_limit_px > 0.0 {
             let layers = squares(level_size(frame.size, frame.blur_halvings));
             self.encoder.clear_buffer(self.buffers.get(Resource::Widest), 0, None);
@@ -168,14 +169,14 @@ impl Recorder<'_> {
         if plan.runs(Pass::Bloom) {
             for (index, step) in steps.iter().enumerate() {
                 self.take_step(index);
-                self.run(Stage::Halve, squares(step.smaller_size));
+                self.run(Stage::Halve, by_four(step.smaller_size));
             }
             for (index, step) in steps.iter().enumerate().skip(1).rev() {
                 self.take_step(index);
-                self.run(Stage::Widen, squares(step.larger_size));
+                self.run(Stage::Widen, by_four(step.larger_size));
             }
         }
-        self.run(Stage::Finish, squares(frame.size));
+        self.run(Stage::Finish, by_four(frame.size));
     }
 
     /// Puts a step between levels in hand.
