@@ -15,6 +15,9 @@
 // Words of a vertex in the pool: position, packed normal, u, v, four joints, four weights.
 const VERTEX_WORDS: u32 = 8u;
 
+// Longest way of a vertex along an axis, so that it is a half.
+const FARTHEST_M: f32 = 60000.0;
+
 struct Rows {
     x: vec4<f32>,
     y: vec4<f32>,
@@ -85,10 +88,26 @@ fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index
         if !(is_finite(position) && is_finite(bent)) {
             atomicMax(&bad_object[3], NOTHING - batch.object);
         }
+        var way = vec3<f32>(0.0);
+        if batch.end != NOTHING {
+            var ends: Rows;
+            if batch.rigid != 0u {
+                ends = rows_at(batch.end);
+            } else {
+                ends = blend(batch.end, meshes[word + 6u], meshes[word + 7u]);
+            }
+            way = transform(ends, vector_at(word), 1.0) - position;
+            if !is_finite(way) {
+                atomicMax(&bad_object[3], NOTHING - batch.object);
+            }
+            way = clamp(way, vec3<f32>(-FARTHEST_M), vec3<f32>(FARTHEST_M));
+        }
         let uv = vec2<f32>(bitcast<f32>(meshes[word + 4u]), bitcast<f32>(meshes[word + 5u]));
         vertices[batch.first + i].position = position;
         vertices[batch.first + i].normal = packed_direction(bent);
         vertices[batch.first + i].uv = uv;
+        vertices[batch.first + i].way =
+            vec2<u32>(pack2x16float(way.xy), pack2x16float(vec2<f32>(way.z, 0.0)));
         screen[batch.first + i] = project(position);
     }
 }

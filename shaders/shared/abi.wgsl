@@ -65,8 +65,12 @@ struct Frame {
     // Share of the light that is scattered, 0 for none, and what each level hands on.
     bloom_share: f32,
     bloom_spread: f32,
-    pad5: u32,
-    pad6: u32,
+    // Motion blur: the longest way until the shutter closes, 0 where nothing moves, and the side of the
+    // tiles that know theirs, pixels.
+    longest_px: f32,
+    way_tile: u32,
+    // Rows of the rotation from view space to that of the time when the shutter closes.
+    end_from_view: array<vec4<f32>, 3>,
     // Rows of the rotation into its axes.
     environment_from_view: array<vec4<f32>, 3>,
     // First word among the texels and log2 of the width of each level, two levels in one.
@@ -109,6 +113,8 @@ struct VertexBatch {
     rigid: u32,
     in_view: u32,
     casts: u32,
+    // Rows of the palette when the shutter closes; NOTHING of what stands still.
+    end: u32,
 }
 
 // Up to 64 triangles of one draw.
@@ -134,7 +140,8 @@ struct Vertex {
     // Of the unit shading normal; see normal.wgsl.
     normal: u32,
     uv: vec2<f32>,
-    pad: vec2<u32>,
+    // How far it goes until the shutter closes, view space, as halves.
+    way: vec2<u32>,
 }
 
 // A projected vertex; x is OUTSIDE where it cannot be projected.

@@ -1,8 +1,4 @@
-// The ray through a point of the picture of a lens. Needs raster_target.
-
-// Rays through the middle of the band's pixels, view space at z = -1: x, y, the change of x over a
-// pixel to the right and down, and that of y.
-@group(0) @binding(12) var<storage, read> rays: array<array<f32, 6>>;
+// The ray through a point of the picture of a lens. Needs raster_target and rays.
 
 struct Ray {
     // View space, at z = -1.
@@ -25,4 +21,12 @@ fn ray_through(at: vec2<f32>) -> Ray {
 // Change over a pixel to the right and down of what changes so with a ray's x and y.
 fn over_pixel(ray: Ray, change: vec2<f32>) -> vec2<f32> {
     return vec2<f32>(dot(change, ray.right), dot(change, ray.down));
+}
+
+// A change of a ray's x and y, pixels.
+fn in_picture(ray: Ray, change: vec2<f32>) -> vec2<f32> {
+    let det = ray.right.x * ray.down.y - ray.down.x * ray.right.y;
+    let x = change.x * ray.down.y - change.y * ray.down.x;
+    let y = change.y * ray.right.x - change.x * ray.right.y;
+    return vec2<f32>(x, y) / det;
 }

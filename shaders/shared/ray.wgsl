@@ -16,3 +16,8 @@ fn ray_through(at: vec2<f32>) -> Ray {
 fn over_pixel(ray: Ray, change: vec2<f32>) -> vec2<f32> {
     return change * ray.step;
 }
+
+// A change of a ray's x and y, pixels.
+fn in_picture(ray: Ray, change: vec2<f32>) -> vec2<f32> {
+    return change / ray.step;
+}

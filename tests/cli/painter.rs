@@ -49,6 +49,7 @@ impl FrameMaker for Painter {
             position_m: DVec3::new(0.0, 0.0, 5.0),
             rotation: DQuat::IDENTITY,
             near_m: 0.1,
+            motion_blur: None,
             depth_of_field: None,
             distortion: None,
         };

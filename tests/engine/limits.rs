@@ -6,7 +6,7 @@ use figurant_core::engine::cpu::{CpuEngine, CpuOptions, SimdChoice};
 use figurant_core::engine::{Engine, EngineError};
 use figurant_core::library::texture::{Encoding, Texture, color_from_srgb8};
 use figurant_core::plan::{Output, StageTimes};
-use figurant_tests::drawlists::{add, any_defocus, any_grade, empty, mixed, view};
+use figurant_tests::drawlists::{add, any_defocus, any_grade, any_shutter, empty, mixed, view};
 use figurant_tests::meshes::{self, Dice};
 use glam::{DAffine3, DMat3, DVec3};
 use std::sync::Arc;
@@ -20,6 +20,9 @@ fn lit(seed: u64, samples: u32) -> DrawList {
     }
     if seed % 4 >= 2 {
         list.defocus = Some(any_defocus(&mut Dice::new(seed + 1)));
+    }
+    if seed % 3 == 1 {
+        any_shutter(&mut Dice::new(seed + 2), &mut list);
     }
     list.lights.sun =
         Some(Sun { direction_to_sun: [0.3, 0.8, 0.5], color_lux: [2.0; 3], shadow: true });

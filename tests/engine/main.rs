@@ -6,5 +6,6 @@ mod common;
 mod labels;
 mod lens;
 mod limits;
+mod motion;
 mod optics;
 mod picture;

@@ -8,8 +8,9 @@ use figurant_core::job::parity::Difference;
 use figurant_core::label;
 use figurant_core::library::texture::{Encoding, Texture, color_from_srgb8};
 use figurant_core::plan::{Output, Outputs};
+use figurant_core::scene::MotionBlur;
 use figurant_tests::drawlists::{
-    any_blockers, any_defocus, any_grade, any_lens, any_surroundings, mixed,
+    any_blockers, any_defocus, any_grade, any_lens, any_shutter, any_surroundings, mixed,
 };
 use figurant_tests::meshes::Dice;
 use std::sync::Arc;
@@ -68,7 +69,10 @@ fn hard_scenes(samples: u32, seeds: std::ops::Range<u64>) {
     let Some(mut engine) = engine() else { return };
     let mut all = Difference::default();
     for seed in seeds {
-        let list = lit(seed, samples);
+        let mut list = lit(seed, samples);
+        if seed % 3 == 1 {
+            any_shutter(&mut Dice::new(seed + 2), &mut list);
+        }
         let (cpu, gpu) = (by_cpu(&list, LABELS), by_gpu(&mut engine, &list, LABELS));
         all.add(&compare(&format!("scene {seed}, {samples} samples"), &list, &cpu, &gpu));
     }
@@ -173,6 +177,34 @@ fn sampled_scenes_out_of_focus_agree() {
         let (list, mut dice) = (&mut drawn.list, Dice::new(frame.into()));
         list.defocus = (frame % 4 != 1).then(|| any_defocus(&mut dice));
         list.grade.bloom = any_grade(&mut dice).bloom;
+        let (cpu, gpu) = (by_cpu(list, &Output::ALL), by_gpu(&mut engine, list, &Output::ALL));
+        let one = compare(&format!("frame {frame}"), list, &cpu, &gpu);
+        println!("frame {frame}: {one:?}");
+        all.add(&one);
+    }
+    check(&all);
+}
+
+/// Pictures of people and cameras that move while the shutter is open, through lenses as well.
+#[test]
+fn sampled_scenes_in_motion_agree() {
+    let Some(mut engine) = engine() else { return };
+    let source = Source::new();
+    let mut all = Difference::default();
+    let barrel = Lens::Brown { k1: -0.25, k2: 0.06, p1: 0.002, p2: -0.001, k3: 0.0 };
+    for frame in 0..12_u32 {
+        let mut dice = Dice::new(900 + u64::from(frame));
+        let samples = [1, 4][frame as usize % 2];
+        let (_, drawn) = source.drawn_with("everyday", frame, 128, samples, |camera| {
+            camera.motion_blur = Some(MotionBlur {
+                shutter_s: dice.range(0.01, 0.2),
+                velocity_m_s: dice.direction() * dice.range(0.0, 2.0),
+                angular_velocity_deg_s: dice.direction() * dice.range(0.0, 60.0),
+            });
+            camera.distortion = (frame % 3 == 2).then_some(barrel);
+        });
+        let list = &drawn.list;
+        assert!(list.shutter.is_some(), "frame {frame} stands still");
         let (cpu, gpu) = (by_cpu(list, &Output::ALL), by_gpu(&mut engine, list, &Output::ALL));
         let one = compare(&format!("frame {frame}"), list, &cpu, &gpu);
         println!("frame {frame}: {one:?}");

@@ -8,7 +8,7 @@ use figurant_core::draw::{Cast, DrawOptions, Drawn, draw};
 use figurant_core::job::catalogue;
 use figurant_core::library::Library;
 use figurant_core::sampling::Sampler;
-use figurant_core::scene::Scene;
+use figurant_core::scene::{Camera, Scene};
 
 /// What scenes are sampled and drawn from.
 pub struct Source {
@@ -35,11 +35,23 @@ impl Source {
         samples: u32,
         lens: Option<Lens>,
     ) -> (Scene, Drawn) {
+        self.drawn_with(preset, frame, size, samples, |camera| camera.distortion = lens)
+    }
+
+    /// As [`Self::drawn`], of a camera that is another in something.
+    pub fn drawn_with(
+        &self,
+        preset: &str,
+        frame: u32,
+        size: u32,
+        samples: u32,
+        change: impl FnOnce(&mut Camera),
+    ) -> (Scene, Drawn) {
         let mut document = file::parse(presets::find(preset).unwrap().text).unwrap();
         (document.image.width, document.image.height) = (size, size);
         let sampler = Sampler::new(Arc::new(document), catalogue(&self.library)).unwrap();
         let mut scene = sampler.scene(frame);
-        scene.camera.distortion = lens;
+        change(&mut scene.camera);
         let options = DrawOptions {
             raster: true,
             shading: true,

@@ -5,8 +5,8 @@ use std::sync::Arc;
 use figurant_core::base::lens::{Lens, LensError, LensGrid};
 use figurant_core::draw::DrawList;
 use figurant_core::draw::abi::{
-    Blocker, Bloom, ColorGrade, Defocus, Draw, DrawObject, Grade, Lights, Material, Surroundings,
-    ToneCurve, View,
+    Blocker, Bloom, ColorGrade, Defocus, Draw, DrawObject, End, Grade, Lights, Material, Shutter,
+    Surroundings, ToneCurve, View,
 };
 use figurant_core::library::environment::EnvironmentMap;
 use figurant_core::library::environment::equirect::Equirect;
@@ -71,6 +71,7 @@ pub fn add(
         mesh: Arc::new(mesh),
         view_from_model: rows(&view_from_model),
         palette: 0..0,
+        end: None,
         in_view: true,
         casts_shadow: true,
         smooth: true,
@@ -118,6 +119,35 @@ pub fn any_grade(dice: &mut Dice) -> Grade {
 pub fn any_defocus(dice: &mut Dice) -> Defocus {
     let (focus_m, at_infinity_px) = (dice.range(0.5, 6.0) as f32, dice.range(0.5, 9.0) as f32);
     Defocus { focus_m, at_infinity_px, largest_px: at_infinity_px * dice.range(1.0, 2.0) as f32 }
+}
+
+/// An open shutter, while which some objects move and the camera turns.
+pub fn any_shutter(dice: &mut Dice, list: &mut DrawList) {
+    let moved = |dice: &mut Dice, m: &[[f32; 4]; 3]| {
+        let mut to = *m;
+        for row in &mut to {
+            row[3] += dice.range(-0.2, 0.2) as f32;
+            row[..3].iter_mut().for_each(|v| *v *= dice.range(0.9, 1.1) as f32);
+        }
+        to
+    };
+    for object in &mut list.objects {
+        if dice.unit() < 0.4 {
+            continue;
+        }
+        let first = list.palette.len() as u32;
+        for joint in object.palette.clone() {
+            let there = moved(dice, &list.palette[joint as usize]);
+            list.palette.push(there);
+        }
+        let view_from_model = moved(dice, &object.view_from_model);
+        object.end = Some(End { view_from_model, palette: first..list.palette.len() as u32 });
+    }
+    let turn = DMat3::from_axis_angle(dice.direction(), dice.range(0.0, 0.1));
+    list.shutter = Some(Shutter {
+        end_from_view: turn.transpose().to_cols_array_2d().map(|row| row.map(|v| v as f32)),
+        longest_px: dice.range(0.6, 20.0) as f32,
+    });
 }
 
 /// A coloured sky with a small bright lamp in it, turned at random.

@@ -365,6 +365,7 @@ impl Sorted {
                 mesh: Arc::clone(mesh),
                 view_from_model: [[0.0; 4]; 3],
                 palette: 0..palette.len() as u32,
+                end: None,
                 in_view: shown,
                 casts_shadow: false,
                 smooth: true,

@@ -61,6 +61,7 @@ const fn name(pass: Pass) -> &'static str {
         Pass::Shadow => "shadow",
         Pass::Shade => "shade",
         Pass::Defocus => "depth of field",
+        Pass::MotionBlur => "motion blur",
         Pass::Bloom => "bloom",
         Pass::Display => "display",
         Pass::Resolve => "resolve",
@@ -73,6 +74,7 @@ const fn reason(why: Skipped) -> &'static str {
         Skipped::NotWanted => "skipped: nothing shown needs it",
         Skipped::NoSunShadow => "skipped: no sun casts a shadow",
         Skipped::InFocus => "skipped: all is in focus",
+        Skipped::Still => "skipped: nothing moves",
         Skipped::NoBloom => "skipped: no light scatters",
     }
 }

@@ -119,6 +119,7 @@ mod tests {
             position_m: flight.viewpoint.position_m,
             rotation: flight.viewpoint.rotation,
             near_m: 0.1,
+            motion_blur: None,
             depth_of_field: None,
             distortion: None,
         };

@@ -48,6 +48,9 @@ pub struct Camera {
     pub near_m: f64,
     /// How what is not in focus blurs.
     pub depth_of_field: DepthOfField,
+    /// How what moves blurs.
+    #[serde(skip_serializing_if = "MotionBlur::is_default")]
+    pub motion_blur: MotionBlur,
     /// What its lens makes of the pinhole's picture, in OpenCV's terms; nothing where absent.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub distortion: Option<Distortion>,
@@ -75,6 +78,7 @@ impl Default for Camera {
             rotation_offset_deg: [five(), five(), five()],
             near_m: 0.1,
             depth_of_field: DepthOfField::default(),
+            motion_blur: MotionBlur::default(),
             distortion: None,
         }
     }
@@ -109,6 +113,39 @@ impl Default for DepthOfField {
             focus: Focus::Distance,
             focus_distance_m: Param::uniform(0.1, 4.0),
             focal_length_mm: Some(Param::uniform(1.0, 23.0)),
+        }
+    }
+}
+
+/// How what moves while the shutter is open blurs: people as their clip goes on, and all of the
+/// picture as the camera does. Labels are those of the middle of that time, and of the sharp picture.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+pub struct MotionBlur {
+    /// Where false, nothing moves.
+    pub enabled: bool,
+    /// How long the shutter is open; nothing blurs farther than a tenth of the picture's height.
+    pub shutter_s: Param,
+    /// The camera's own velocity along its axes: to the right, up, backwards.
+    pub velocity_m_s: [Param; 3],
+    /// How fast the camera turns about its axes: up, to the left, against the clock.
+    pub angular_velocity_deg_s: [Param; 3],
+}
+
+impl MotionBlur {
+    fn is_default(&self) -> bool {
+        *self == Self::default()
+    }
+}
+
+impl Default for MotionBlur {
+    fn default() -> Self {
+        let none = || [0.0, 0.0, 0.0].map(Param::from);
+        Self {
+            enabled: false,
+            shutter_s: 0.02.into(),
+            velocity_m_s: none(),
+            angular_velocity_deg_s: none(),
         }
     }
 }

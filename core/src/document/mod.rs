@@ -37,7 +37,7 @@ mod vector;
 mod wardrobe;
 
 pub use assets::{Assets, OnError};
-pub use camera::{Brown, Camera, DepthOfField, Distortion, Fisheye, Focus, Image};
+pub use camera::{Brown, Camera, DepthOfField, Distortion, Fisheye, Focus, Image, MotionBlur};
 pub use face::{Expression, ExpressionKind};
 pub use lights::{
     Clock, Environment, Lights, MovingLight, PointLight, Sun, SunAngles, SunDirection,

@@ -24,7 +24,8 @@ pub struct DrawList {
     pub materials: Vec<Material>,
     /// Textures that the materials name by index.
     pub textures: Vec<Arc<Texture>>,
-    /// `view_from_model` of every joint of every skinned object: three rows of four.
+    /// `view_from_model` of every joint of every skinned object, and once more where it moves: three
+    /// rows of four.
     pub palette: Vec<[[f32; 4]; 3]>,
     /// Spheres that keep surrounding light off what is near them, at most [`MAX_BLOCKERS`].
     pub blockers: Vec<Blocker>,
@@ -34,6 +35,8 @@ pub struct DrawList {
     pub exposure: f32,
     /// How what is not in focus blurs, where anything is.
     pub defocus: Option<Defocus>,
+    /// What moves while the shutter is open, where anything does.
+    pub shutter: Option<Shutter>,
     /// What else happens to the light behind the lens.
     pub grade: Grade,
     /// Largest side of the sun's shadow map in texels, a multiple of 64.
@@ -77,6 +80,8 @@ pub struct DrawObject {
     pub view_from_model: [[f32; 4]; 3],
     /// Where its joints stand in the palette; empty for rigid meshes.
     pub palette: Range<u32>,
+    /// How it stands when the shutter closes, where that is otherwise.
+    pub end: Option<End>,
     /// Whether the camera may see it; what it may not see only casts shadows.
     pub in_view: bool,
     /// Whether it casts shadows.
@@ -85,6 +90,15 @@ pub struct DrawObject {
     pub smooth: bool,
     /// Those of [`DrawList::blockers`] that are its own.
     pub blockers: Range<u32>,
+}
+
+/// How an object stands when the shutter closes, in the view space of that time.
+#[derive(Clone, Debug, PartialEq)]
+pub struct End {
+    /// As [`DrawObject::view_from_model`].
+    pub view_from_model: [[f32; 4]; 3],
+    /// As [`DrawObject::palette`], and as long.
+    pub palette: Range<u32>,
 }
 
 /// Triangles of one object with one material.
@@ -271,6 +285,21 @@ impl Defocus {
     pub const SHARP_PX: f64 = 0.5;
     /// What lies before the focus is blurred no more than this times what lies at infinity.
     pub const NEAR_LIMIT: f64 = 2.0;
+}
+
+/// What moves while the shutter is open, evenly and on straight lines: from as far before the frame's
+/// time as it goes until the shutter closes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Shutter {
+    /// Rows of the rotation from view space to that of the time when it closes.
+    pub end_from_view: [[f32; 3]; 3],
+    /// Longest way until it closes, pixels; longer ones are cut.
+    pub longest_px: f32,
+}
+
+impl Shutter {
+    /// Where nothing goes farther until the shutter closes, nothing moves.
+    pub const STILL_PX: f64 = 0.5;
 }
 
 /// Light that a lens scatters: `light + share (scattered - light)`.

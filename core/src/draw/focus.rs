@@ -36,6 +36,7 @@ mod tests {
             position_m: DVec3::ZERO,
             rotation: DQuat::IDENTITY,
             near_m: 0.1,
+            motion_blur: None,
             depth_of_field: Some(DepthOfField {
                 f_number,
                 focus_distance_m,

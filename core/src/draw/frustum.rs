@@ -85,6 +85,7 @@ mod tests {
                 position_m: DVec3::ZERO,
                 rotation: DQuat::IDENTITY,
                 near_m: 0.1,
+                motion_blur: None,
                 depth_of_field: None,
                 distortion: None,
             },

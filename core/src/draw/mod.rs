@@ -13,6 +13,7 @@
 //! | `focus` | whether anything is out of focus, and by how much |
 //! | [`frustum`] | what the camera may see, and whose shadow it may see |
 //! | `lights` | lights in view space |
+//! | `motion` | what moves while the shutter is open, and where to |
 //! | `objects` | walls, floors, occluders |
 //! | `people` | persons: shape, pose, level of detail, keypoints |
 //! | `surfaces` | materials and the textures they name |
@@ -24,6 +25,7 @@ mod focus;
 pub mod frustum;
 mod grade;
 mod lights;
+mod motion;
 mod objects;
 mod people;
 mod surfaces;
@@ -132,6 +134,7 @@ pub fn draw(
     }
     people::add(&mut drawing)?;
     drawing.drawn.list.defocus = focus::defocus(&scene.camera, drawing.nearest_m);
+    drawing.drawn.list.shutter = drawing.motion.as_ref().and_then(motion::Motion::shutter);
     Ok(drawing.drawn)
 }
 
@@ -150,6 +153,8 @@ struct Drawing<'a> {
     surfaces: surfaces::Surfaces,
     /// No nearer does anything come that may be seen, along the view axis.
     nearest_m: f64,
+    /// When the shutter is open for a while.
+    motion: Option<motion::Motion>,
     drawn: Drawn,
 }
 
@@ -183,6 +188,7 @@ impl<'a> Drawing<'a> {
             shadow_direction: sun.map(|s| view_from_world.transform_vector3(s.direction_to_sun)),
             surfaces: surfaces::Surfaces::default(),
             nearest_m: f64::INFINITY,
+            motion: motion::Motion::new(&scene.camera).filter(|_| options.shading),
             drawn: Drawn { list, ..Drawn::default() },
         })
     }
@@ -202,6 +208,19 @@ impl<'a> Drawing<'a> {
     fn note_near_side(&mut self, hull: &[Sphere], relevance: Relevance) {
         if relevance.in_view {
             self.nearest_m = self.nearest_m.min(self.near_side_m(hull));
+        }
+    }
+
+    /// Takes note of how far what is drawn moves until the shutter closes.
+    fn note_motion(
+        &mut self,
+        hull: &[Sphere],
+        relevance: Relevance,
+        ways: impl Iterator<Item = (DVec3, DVec3)>,
+    ) {
+        let px_per_m = self.px_per_m(hull);
+        if let Some(motion) = self.motion.as_mut().filter(|_| relevance.in_view) {
+            motion.note(ways, px_per_m);
         }
     }
 
@@ -272,6 +291,7 @@ pub(crate) fn empty_object() -> abi::DrawObject {
         mesh: Arc::default(),
         view_from_model: rows(&DAffine3::IDENTITY),
         palette: 0..0,
+        end: None,
         in_view: true,
         casts_shadow: false,
         smooth: true,

@@ -28,6 +28,15 @@ pub fn add_one(drawing: &mut Drawing, object: &Object) -> Result<Option<u32>, Dr
         return Ok(None);
     }
     drawing.note_near_side(&hull, relevance);
+    let view_from_model_at_end = drawing
+        .motion
+        .as_ref()
+        .filter(|motion| motion.camera_moves)
+        .map(|motion| motion.view_from_world * world_from_model(&object.placement));
+    if let Some(at_end) = &view_from_model_at_end {
+        let ends = corners(at_end);
+        drawing.note_motion(&hull, relevance, ways(&hull, &ends));
+    }
     let mesh = shape_mesh(object.shape, detail(drawing, &hull, scale, relevance));
     let material = if drawing.options.shading && relevance.in_view {
         let list = &mut drawing.drawn.list;
@@ -48,6 +57,7 @@ pub fn add_one(drawing: &mut Drawing, object: &Object) -> Result<Option<u32>, Dr
         mesh,
         view_from_model: rows(&view_from_model),
         palette: 0..0,
+        end: view_from_model_at_end.map(|m| abi::End { view_from_model: rows(&m), palette: 0..0 }),
         in_view: relevance.in_view,
         // What stands behind everything shades nothing; leaving it out keeps the map tight.
         casts_shadow: relevance.casts_shadow && object.role == Role::Occluder,
@@ -64,6 +74,11 @@ fn corners(view_from_model: &DAffine3) -> [Sphere; 8] {
         center: view_from_model.transform_point3(DVec3::new(side(k, 0), side(k, 1), side(k, 2))),
         radius_m: 0.0,
     })
+}
+
+/// Between the middles of spheres.
+fn ways(from: &[Sphere], to: &[Sphere]) -> impl Iterator<Item = (DVec3, DVec3)> {
+    from.iter().zip(to).map(|(from, to)| (from.center, to.center))
 }
 
 /// The coarsest detail whose circles leave their polygons by less than the wanted error.

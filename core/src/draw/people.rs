@@ -10,8 +10,9 @@ use glam::{DAffine3, DVec3};
 use rayon::prelude::*;
 
 use super::frustum::Sphere;
+use super::motion::Motion;
 use super::objects::{self, world_from_model};
-use super::{Cast, DrawError, Drawing, DrawnPerson, Relevance, abi, blockers, rows};
+use super::{DrawError, Drawing, DrawnPerson, Relevance, abi, blockers, rows};
 use crate::geometry::body::RestBody;
 use crate::geometry::person::{Dressed, MeshKey, hair_reach_m};
 use crate::geometry::points;
@@ -44,17 +45,25 @@ struct Posed<'a> {
     scale: f64,
     /// No vertex leaves the hull of these.
     hull: Vec<Sphere>,
+    /// When the shutter closes, where that is otherwise.
+    end: Option<AtEnd>,
+}
+
+/// A person when the shutter closes.
+struct AtEnd {
+    skeleton: PosedSkeleton,
+    /// View space of that time.
+    view_from_model: DAffine3,
 }
 
 /// Adds the scene's people: keypoints of all, meshes of those that matter to the picture.
 pub fn add(drawing: &mut Drawing) -> Result<(), DrawError> {
-    let view_from_world = drawing.view_from_world;
-    let (scene, library, cast) = (drawing.scene, drawing.library, drawing.cast);
-    let posed: Vec<Posed> = scene
-        .people
-        .par_iter()
-        .map(|person| pose_one(person, library, cast, &view_from_world))
-        .collect::<Result<_, _>>()?;
+    let posed: Vec<Posed> = {
+        let drawing = &*drawing;
+        let people = drawing.scene.people.par_iter();
+        people.map(|person| pose_one(person, drawing)).collect::<Result<_, _>>()?
+    };
+    let (library, cast) = (drawing.library, drawing.cast);
     let relevances: Vec<Relevance> = posed.iter().map(|p| relevance(drawing, p)).collect();
     let dressed: Vec<Option<Arc<Dressed>>> = {
         let drawing = &*drawing;
@@ -71,6 +80,9 @@ pub fn add(drawing: &mut Drawing) -> Result<(), DrawError> {
     {
         let mut drawn = describe(index, posed);
         drawing.note_near_side(&posed.hull, *relevance);
+        if let Some(end) = &posed.end {
+            drawing.note_motion(&posed.hull, *relevance, ways(posed, end));
+        }
         if let Some(dressed) = dressed {
             let blockers = add_blockers(drawing, posed, *relevance, &drawn);
             drawn.object = Some(add_mesh(drawing, posed, *relevance, &dressed, blockers)?);
@@ -81,22 +93,15 @@ pub fn add(drawing: &mut Drawing) -> Result<(), DrawError> {
     Ok(())
 }
 
-fn pose_one<'a>(
-    person: &'a Person,
-    library: &Library,
-    cast: &Cast,
-    view_from_world: &DAffine3,
-) -> Result<Posed<'a>, DrawError> {
+fn pose_one<'a>(person: &'a Person, drawing: &Drawing<'a>) -> Result<Posed<'a>, DrawError> {
+    let library = drawing.library;
     let key = MeshKey::new(person);
-    let body = cast.body(&library.figure, key, person)?;
-    let (mut skeleton, rests) = skeleton(&person.pose, library, &body.heads_m)?;
-    body.trunk.push_arms_out(&body.heads_m, &mut skeleton);
-    let contacts = body.ground.iter().map(|p| (p.rest_m, p.skin));
-    if rests {
-        skeleton.settle(&body.heads_m, contacts.clone());
-    }
-    skeleton.ground(contacts);
-    let view_from_model = *view_from_world * world_from_model(&person.placement);
+    let body = drawing.cast.body(&library.figure, key, person)?;
+    let skeleton = stand(&person.pose, library, &body)?;
+    let world_from_model = world_from_model(&person.placement);
+    let view_from_model = drawing.view_from_world * world_from_model;
+    let motion = drawing.motion.as_ref();
+    let end = motion.map(|m| at_end(person, library, &body, &skeleton, m)).transpose()?.flatten();
     let scale = person.placement.scale.abs().max_element();
     let of_joint = |j: usize| (skeleton.joint_m(j, body.heads_m[j]), body.reach_m[j]);
     let hanging =
@@ -117,6 +122,44 @@ fn pose_one<'a>(
         skeleton,
         view_from_model,
         scale,
+        end,
+    })
+}
+
+/// A body in a pose, on the ground.
+fn stand(pose: &Pose, library: &Library, body: &RestBody) -> Result<PosedSkeleton, DrawError> {
+    let (mut skeleton, rests) = skeleton(pose, library, &body.heads_m)?;
+    body.trunk.push_arms_out(&body.heads_m, &mut skeleton);
+    let contacts = body.ground.iter().map(|p| (p.rest_m, p.skin));
+    if rests {
+        skeleton.settle(&body.heads_m, contacts.clone());
+    }
+    skeleton.ground(contacts);
+    Ok(skeleton)
+}
+
+/// Somebody when the shutter closes; nothing where neither they nor the camera move.
+fn at_end(
+    person: &Person,
+    library: &Library,
+    body: &RestBody,
+    now: &PosedSkeleton,
+    motion: &Motion,
+) -> Result<Option<AtEnd>, DrawError> {
+    let view_from_model = motion.view_from_world * world_from_model(&person.placement);
+    let skeleton = match motion.pose_at_end(&person.pose, library)? {
+        Some(pose) => stand(&pose, library, body)?,
+        None if motion.camera_moves => now.clone(),
+        None => return Ok(None),
+    };
+    Ok(Some(AtEnd { skeleton, view_from_model }))
+}
+
+/// Where joints are, and where they are when the shutter closes, each in its view space.
+fn ways(posed: &Posed, end: &AtEnd) -> impl Iterator<Item = (DVec3, DVec3)> {
+    posed.body.heads_m.iter().enumerate().map(|(joint, head_m)| {
+        let now = posed.view_from_model.transform_point3(posed.skeleton.joint_m(joint, *head_m));
+        (now, end.view_from_model.transform_point3(end.skeleton.joint_m(joint, *head_m)))
     })
 }
 
@@ -226,11 +269,20 @@ fn add_mesh(
         });
     }
     let first = list.palette.len() as u32;
-    list.palette.extend(joints(posed, dressed).map(|m| rows(&(posed.view_from_model * m))));
+    let now = joints(posed, &posed.skeleton, dressed);
+    list.palette.extend(now.map(|m| rows(&(posed.view_from_model * m))));
+    let palette = first..list.palette.len() as u32;
+    let end = posed.end.as_ref().map(|end| {
+        let joints = joints(posed, &end.skeleton, dressed);
+        list.palette.extend(joints.map(|m| rows(&(end.view_from_model * m))));
+        let view_from_model = rows(&end.view_from_model);
+        abi::End { view_from_model, palette: palette.end..list.palette.len() as u32 }
+    });
     list.objects.push(abi::DrawObject {
         mesh: Arc::clone(&dressed.mesh),
         view_from_model: rows(&posed.view_from_model),
-        palette: first..list.palette.len() as u32,
+        palette,
+        end,
         in_view: relevance.in_view,
         casts_shadow: relevance.casts_shadow,
         smooth: true,
@@ -239,9 +291,13 @@ fn add_mesh(
     Ok(index)
 }
 
-/// Where all joints that move somebody's mesh go: the skeleton's and those of what hangs.
-fn joints(posed: &Posed, dressed: &Dressed) -> impl Iterator<Item = DAffine3> {
-    let (skeleton, body) = (&posed.skeleton, &*posed.body);
+/// Where a pose takes all joints that move somebody's mesh: the skeleton's and those of what hangs.
+fn joints<'a>(
+    posed: &Posed,
+    skeleton: &PosedSkeleton,
+    dressed: &'a Dressed,
+) -> impl Iterator<Item = DAffine3> + use<'a> {
+    let body = &*posed.body;
     // Weight pulls down in the world.
     let down = posed.person.placement.rotation.inverse() * DVec3::NEG_Y;
     let cloth = sway::joints(skeleton, &body.heads_m);

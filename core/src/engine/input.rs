@@ -3,7 +3,7 @@
 
 use super::EngineError;
 use crate::draw::DrawList;
-use crate::draw::abi::{Defocus, Draw, Grade, Material};
+use crate::draw::abi::{Defocus, Draw, Grade, Material, Shutter};
 use crate::library::mesh::Triangle;
 use crate::library::texture::Texture;
 
@@ -108,6 +108,11 @@ fn check_view_and_lights(list: &DrawList) -> Result<(), EngineError> {
         finite(NO_OBJECT, "a number of the depth of field", &numbers)?;
         at_most("blur of the depth of field", largest_px as u64, MAX_BLUR_PX)?;
     }
+    if let Some(Shutter { end_from_view, longest_px }) = &list.shutter {
+        let numbers = end_from_view.as_flattened().iter().chain([longest_px]);
+        finite(NO_OBJECT, "a number of the shutter", numbers)?;
+        at_most("way of what moves", *longest_px as u64, MAX_BLUR_PX)?;
+    }
     finite(NO_OBJECT, "a number of the view", view.view_from_world.as_flattened())?;
     if view.fx <= 0.0 || view.fy <= 0.0 || view.near_m <= 0.0 {
         return invalid("focal length and near plane", 0, 0, "positive numbers");
@@ -157,6 +162,13 @@ fn check_objects(list: &DrawList) -> Result<(), EngineError> {
             continue;
         }
         let palette = object.palette.start as usize..object.palette.end as usize;
+        let ends = object.end.as_ref().map(|end| end.palette.clone());
+        if ends.is_some_and(|end| {
+            end.len() != object.palette.len() || end.end as usize > list.palette.len()
+        }) {
+            let expected = "a range within the list's palette, as long as that of the object";
+            return invalid("palette at the end of object", index, 0, expected);
+        }
         let Some(palette) = list.palette.get(palette) else {
             return invalid(
                 "palette of object",

@@ -2,13 +2,21 @@
 //! it is spread. How it is spread is each engine's own.
 
 use crate::draw::DrawList;
-use crate::draw::abi::{Bloom, Defocus};
+use crate::draw::abi::{Bloom, Defocus, Shutter};
 use crate::plan::{Pass, PassPlan};
 
 /// Largest radius over which light out of focus is gathered, texels.
 const MOST_TEXELS: f32 = 8.0;
 /// Levels of the pyramid of scattered light at most.
 const MOST_LEVELS: usize = 12;
+/// Places that light is taken from on either side of a pixel, along a way.
+pub(super) const MOST_TAPS: u32 = 16;
+/// Ways are kept in whole parts of a pixel, so many of them.
+pub(super) const WAY_PER_PX: f32 = 64.0;
+/// Longest way that is kept, pixels, so that it fits 16 bits.
+pub(super) const MOST_WAY_PX: f32 = 500.0;
+/// Sides of the tiles that know their longest way are multiples of this.
+const LEAST_TILE: u32 = 8;
 /// Texels of the larger side that a level has at least.
 const LEAST_SIDE: u32 = 4;
 
@@ -22,9 +30,21 @@ pub(super) fn scatters(list: &DrawList, plan: &PassPlan) -> Option<Bloom> {
     list.grade.bloom.filter(|_| plan.runs(Pass::Bloom))
 }
 
+/// What moves while the shutter is open, where a frame's plan draws it out.
+pub(super) fn moves(list: &DrawList, plan: &PassPlan) -> Option<Shutter> {
+    list.shutter.filter(|_| plan.runs(Pass::MotionBlur))
+}
+
+/// Side of the tiles that know their longest way, pixels: no way is longer.
+pub(super) fn way_tile(shutter: &Shutter) -> u32 {
+    (shutter.longest_px.ceil() as u32).next_multiple_of(LEAST_TILE)
+}
+
 /// Whether a frame's light is kept, to be developed by the pixel once all of it is known.
 pub(super) fn keeps_light(list: &DrawList, plan: &PassPlan) -> bool {
-    let spreads = blurs(list, plan).is_some() || scatters(list, plan).is_some();
+    let spreads = blurs(list, plan).is_some()
+        || moves(list, plan).is_some()
+        || scatters(list, plan).is_some();
     plan.runs(Pass::Display) && spreads
 }
 

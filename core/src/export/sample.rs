@@ -49,6 +49,7 @@ pub fn scene(frame: u32) -> Scene {
             position_m: DVec3::new(0.1, 0.2, 15.0),
             rotation: DQuat::IDENTITY,
             near_m: 0.3,
+            motion_blur: None,
             depth_of_field: None,
             distortion: None,
         },

@@ -141,6 +141,7 @@ impl Studio {
         let facts = SceneFacts {
             sun_shadow: scene.lights.sun.as_ref().is_some_and(|s| s.shadow),
             defocus: scene.camera.depth_of_field.is_some(),
+            motion: scene.camera.motion_blur.is_some(),
             bloom: scene.post.bloom > 0.0,
         };
         PassPlan::new(&self.outputs, facts)
@@ -185,6 +186,10 @@ impl Studio {
             let plan = match drawn.list.defocus {
                 Some(_) => plan,
                 None => plan.without(Pass::Defocus, Skipped::InFocus),
+            };
+            let plan = match drawn.list.shutter {
+                Some(_) => plan,
+                None => plan.without(Pass::MotionBlur, Skipped::Still),
             };
             let frame = if plan.needs_engine() {
                 engine.render(&drawn.list, &plan, times)?

@@ -393,6 +393,7 @@ mod tests {
             position_m: DVec3::new(1.5, -2.0, 15.0),
             rotation: DQuat::from_rotation_y(0.2) * DQuat::from_rotation_x(-0.1),
             near_m: 0.3,
+            motion_blur: None,
             depth_of_field: None,
             distortion: None,
         };

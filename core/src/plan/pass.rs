@@ -38,6 +38,8 @@ pub enum Pass {
     Shade,
     /// Spreads light that is out of focus.
     Defocus,
+    /// Draws light out along the ways of what moves.
+    MotionBlur,
     /// Scatters light round what is bright.
     Bloom,
     /// Tone map and sRGB.
@@ -50,13 +52,14 @@ pub enum Pass {
 
 impl Pass {
     /// All passes in execution order.
-    pub const ALL: [Self; 10] = [
+    pub const ALL: [Self; 11] = [
         Self::Points,
         Self::Skin,
         Self::Visibility,
         Self::Shadow,
         Self::Shade,
         Self::Defocus,
+        Self::MotionBlur,
         Self::Bloom,
         Self::Display,
         Self::Resolve,
@@ -71,6 +74,7 @@ impl Pass {
             Self::Visibility | Self::Shadow => &[Buffer::Vertices],
             Self::Shade => &[Buffer::Vertices, Buffer::Visibility, Buffer::ShadowMap],
             Self::Defocus => &[Buffer::Visibility, Buffer::Radiance],
+            Self::MotionBlur => &[Buffer::Vertices, Buffer::Visibility, Buffer::Radiance],
             Self::Bloom | Self::Display => &[Buffer::Radiance],
             Self::Resolve | Self::Reduce => &[Buffer::Visibility],
         }
@@ -84,7 +88,7 @@ impl Pass {
             Self::Skin => &[Buffer::Vertices],
             Self::Visibility => &[Buffer::Visibility],
             Self::Shadow => &[Buffer::ShadowMap],
-            Self::Shade | Self::Defocus | Self::Bloom => &[Buffer::Radiance],
+            Self::Shade | Self::Defocus | Self::MotionBlur | Self::Bloom => &[Buffer::Radiance],
             Self::Display => &[Buffer::Picture],
             Self::Resolve => &[Buffer::ObjectIds, Buffer::Depth],
             Self::Reduce => &[Buffer::ObjectSamples],

@@ -11,19 +11,22 @@ pub struct SceneFacts {
     pub sun_shadow: bool,
     /// The camera has a depth of field.
     pub defocus: bool,
+    /// The shutter is open for a while.
+    pub motion: bool,
     /// The lens scatters light.
     pub bloom: bool,
 }
 
 impl SceneFacts {
     /// Where nothing is known, everything may be there.
-    pub const ANY: Self = Self { sun_shadow: true, defocus: true, bloom: true };
+    pub const ANY: Self = Self { sun_shadow: true, defocus: true, motion: true, bloom: true };
 
     /// Why a scene does without a pass that its outputs would take.
     const fn skip(self, pass: Pass) -> Option<Skipped> {
         match pass {
             Pass::Shadow if !self.sun_shadow => Some(Skipped::NoSunShadow),
             Pass::Defocus if !self.defocus => Some(Skipped::InFocus),
+            Pass::MotionBlur if !self.motion => Some(Skipped::Still),
             Pass::Bloom if !self.bloom => Some(Skipped::NoBloom),
             _ => None,
         }
@@ -39,6 +42,8 @@ pub enum Skipped {
     NoSunShadow,
     /// Nothing that is seen is out of focus.
     InFocus,
+    /// Nothing that is seen moves while the shutter is open.
+    Still,
     /// The lens scatters no light.
     NoBloom,
 }
@@ -178,7 +183,7 @@ mod tests {
     fn labels_without_a_picture_need_no_shading() {
         let plan = PassPlan::new(&Outputs::from([Output::Box2d, Output::Instance]), LIT);
         assert!(plan.needs_engine());
-        let unwanted = [Pass::Shadow, Pass::Shade, Pass::Defocus, Pass::Bloom];
+        let unwanted = [Pass::Shadow, Pass::Shade, Pass::Defocus, Pass::MotionBlur, Pass::Bloom];
         for pass in unwanted.into_iter().chain([Pass::Display, Pass::Points]) {
             assert!(plan.skipped().contains(&(pass, Skipped::NotWanted)), "{pass:?}");
         }
@@ -196,6 +201,7 @@ mod tests {
         let rgb = Outputs::from([Output::Rgb]);
         let plan = PassPlan::new(&rgb, SceneFacts::default());
         assert!(plan.skipped().contains(&(Pass::Defocus, Skipped::InFocus)));
+        assert!(plan.skipped().contains(&(Pass::MotionBlur, Skipped::Still)));
         assert!(plan.skipped().contains(&(Pass::Bloom, Skipped::NoBloom)));
         let found_out = PassPlan::new(&rgb, SceneFacts { defocus: true, ..SceneFacts::default() });
         assert!(found_out.runs(Pass::Defocus));

@@ -7,8 +7,8 @@ use super::linked::Draws;
 use super::place::is_seen;
 use super::value::{number, rotation, vector};
 use crate::base::lens::Lens;
-use crate::document::{self, Brown, Distortion, Document, Fisheye, Focus};
-use crate::scene::{Camera, DepthOfField, Person, Placement};
+use crate::document::{self, Brown, Distortion, Document, Fisheye, Focus, Param};
+use crate::scene::{Camera, DepthOfField, MotionBlur, Person, Placement};
 
 pub(super) fn camera(document: &Document, draws: Draws) -> Camera {
     let camera = &document.camera;
@@ -32,6 +32,7 @@ pub(super) fn camera(document: &Document, draws: Draws) -> Camera {
         rotation: rotation(&camera.rotation_deg, offset_deg, of(keys::CAMERA_ROTATION)),
         near_m: camera.near_m,
         depth_of_field: depth_of_field(camera, fov_vertical_deg, draws.random_if(camera.enabled)),
+        motion_blur: motion_blur(camera, draws.random_if(camera.enabled)),
         distortion: camera
             .distortion
             .as_ref()
@@ -55,6 +56,19 @@ fn depth_of_field(
             None => focal_length_mm(fov_vertical_deg, camera.sensor_height_mm),
         },
         sensor_height_mm: camera.sensor_height_mm,
+    })
+}
+
+fn motion_blur(camera: &document::Camera, draws: Draws) -> Option<MotionBlur> {
+    let blur = &camera.motion_blur;
+    let of_axes = |params: &[Param; 3], key| {
+        let key = draws.of(key, 0);
+        DVec3::from_array([0, 1, 2].map(|i| number(&params[usize::from(i)], key.lane(i))))
+    };
+    blur.enabled.then(|| MotionBlur {
+        shutter_s: number(&blur.shutter_s, draws.of(keys::SHUTTER, 0)),
+        velocity_m_s: of_axes(&blur.velocity_m_s, keys::CAMERA_VELOCITY),
+        angular_velocity_deg_s: of_axes(&blur.angular_velocity_deg_s, keys::CAMERA_TURN),
     })
 }
 

@@ -174,6 +174,9 @@ keys! {
     F_NUMBER = "camera.depth_of_field.f_number",
     FOCUS_DISTANCE = "camera.depth_of_field.focus_distance",
     BLUR_FOCAL_LENGTH = "camera.depth_of_field.focal_length",
+    SHUTTER = "camera.motion_blur.shutter",
+    CAMERA_VELOCITY = "camera.motion_blur.velocity",
+    CAMERA_TURN = "camera.motion_blur.angular_velocity",
 }
 
 #[cfg(test)]

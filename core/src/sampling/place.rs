@@ -268,6 +268,7 @@ mod tests {
             position_m: DVec3::new(0.0, 1.5, 6.0),
             rotation: DQuat::IDENTITY,
             near_m: 0.1,
+            motion_blur: None,
             depth_of_field: None,
             distortion: None,
         }

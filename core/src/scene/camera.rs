@@ -25,6 +25,9 @@ pub struct Camera {
     /// How what is not in focus blurs; all is sharp where absent.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub depth_of_field: Option<DepthOfField>,
+    /// How what moves blurs; nothing does where absent.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub motion_blur: Option<MotionBlur>,
     /// What its lens makes of the pinhole's picture.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub distortion: Option<Lens>,
@@ -43,6 +46,17 @@ pub struct DepthOfField {
     pub sensor_height_mm: f64,
 }
 
+/// A shutter, and how the camera moves while it is open.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct MotionBlur {
+    /// How long it is open, seconds; the scene is that of the middle of this time.
+    pub shutter_s: f64,
+    /// Along the camera's axes.
+    pub velocity_m_s: DVec3,
+    /// About the camera's axes.
+    pub angular_velocity_deg_s: DVec3,
+}
+
 impl DepthOfField {
     /// Radius, in heights of the picture, of the disk that a point at infinity becomes: half of
     /// `f^2 / (N (P - f))` on the sensor, P being the distance in focus. At a distance z it is
@@ -58,6 +72,18 @@ impl DepthOfField {
 }
 
 impl Camera {
+    /// The camera some time later, as it moves; itself where it does not.
+    #[must_use]
+    pub fn after(&self, time_s: f64) -> Self {
+        let Some(motion) = &self.motion_blur else { return *self };
+        let turn = motion.angular_velocity_deg_s.map(f64::to_radians) * time_s;
+        Self {
+            position_m: self.position_m + self.rotation * (motion.velocity_m_s * time_s),
+            rotation: (self.rotation * rotation_by(turn)).normalize(),
+            ..*self
+        }
+    }
+
     /// Focal length in pixels, the same for both axes: `H / 2 / tan(fov / 2)`.
     #[must_use]
     pub fn focal_px(&self) -> f64 {
@@ -116,4 +142,15 @@ impl Camera {
         let undistorted = DVec2::new(p_in_view.x, -p_in_view.y) / -p_in_view.z;
         self.distortion.is_none_or(|lens| lens.reaches(undistorted))
     }
+}
+
+/// The rotation about a vector by its length, radians.
+fn rotation_by(turn: DVec3) -> DQuat {
+    let angle = turn.length();
+    if angle == 0.0 {
+        return DQuat::IDENTITY;
+    }
+    let (sin, cos) = libm::sincos(0.5 * angle);
+    let axis = turn * (sin / angle);
+    DQuat::from_xyzw(axis.x, axis.y, axis.z, cos)
 }

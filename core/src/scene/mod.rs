@@ -12,7 +12,7 @@ mod outfit;
 mod person;
 mod post;
 
-pub use camera::{Camera, DepthOfField};
+pub use camera::{Camera, DepthOfField, MotionBlur};
 pub use outfit::{Bottom, BottomKind, Outer, OuterKind, Outfit, ShoeKind, Shoes, Top, TopKind};
 pub use person::{
     BeardStyle, Body, Glasses, HairStyle, HandShape, Headwear, HeadwearKind, Look, Person, Pose,

@@ -43,6 +43,11 @@ pub(super) fn camera(c: &mut Check, camera: &Camera) {
         let path = "camera.depth_of_field.focal_length_mm";
         c.param(path, focal_length_mm, Range::above(0.0, 1e6));
     }
+    let blur = &camera.motion_blur;
+    c.param("camera.motion_blur.shutter_s", &blur.shutter_s, Range::from_to(0.0, 10.0));
+    c.axes("camera.motion_blur.velocity_m_s", &blur.velocity_m_s, POSITION);
+    let turn = Range::from_to(-36_000.0, 36_000.0);
+    c.axes("camera.motion_blur.angular_velocity_deg_s", &blur.angular_velocity_deg_s, turn);
     if let Some(distortion) = &camera.distortion {
         // Whether a picture folds over depends on its size and the field of view, and is found out
         // frame by frame.

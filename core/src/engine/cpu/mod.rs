@@ -9,7 +9,8 @@
 //! | per tile (`tile`): visibility | `raster`, `lens_raster`, `samples` | -> object, triangle and depth of each sample |
 //! | per tile: shade | `fragment`, `shade`, `develop` | -> linear display light |
 //! | per tile: display | `display` | -> the 8-bit picture |
-//! | over the picture: depth of field, bloom, display | `optics` | light, where it is kept -> the 8-bit picture |
+//! | per tile: ways | `ways` | -> how far what pixels show moves, where anything does |
+//! | over the picture: depth of field, motion blur, bloom, display | `optics` | light, where it is kept -> the 8-bit picture |
 //! | per tile: resolve, reduce | `resolve`, `reduce` | -> ids, distances, counts, extents |
 //!
 //! Picture and labels come from the same samples. A pass that the plan leaves out is not computed.
@@ -39,6 +40,7 @@ mod shadow;
 mod simd;
 mod skin;
 mod tile;
+mod ways;
 
 use std::sync::{Mutex, PoisonError};
 
@@ -56,7 +58,7 @@ use self::shadow::map::{ShadowMap, SunShadow};
 use self::shadow::{Bounds, ShadowView, SunAxes};
 use self::simd::Level;
 use self::tile::{Row, Scratch, Shading, TilePass};
-use super::optics::keeps_light;
+use super::optics::{keeps_light, moves};
 use super::{Engine, EngineError, input, resized};
 use crate::draw::DrawList;
 use crate::plan::{Frame, ObjectSamples, Pass, PassPlan, StageTimes};
@@ -190,6 +192,9 @@ impl Buffers {
         let shades = plan.runs(Pass::Shade);
 
         times.measure("skin", || self.placed.place(level, list, &projection, &wanted, shades))?;
+        if moves(list, plan).is_some() {
+            times.measure("skin", || self.placed.take_ways(list, &seen))?;
+        }
         times.measure("setup", || {
             self.visible.fill(list, &self.placed, &seen)?;
             let (placed, chunks) = (&self.placed, self.visible.as_mut_slice());
@@ -317,6 +322,7 @@ impl Buffers {
                     if keeps_light(list, plan) { Develop::keep() } else { Develop::new(list) };
                 shading(list, self.visible.as_slice(), &self.placed, shadow, develop)
             }),
+            shutter: moves(list, plan),
             resolves,
             reduces,
         };

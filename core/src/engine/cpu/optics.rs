@@ -3,16 +3,18 @@
 //! | step | file | in -> out |
 //! |---|---|---|
 //! | depth of field | `defocus` | light, how far out of focus it is -> light |
+//! | motion blur | `streak` | light, how far it goes -> light |
 //! | bloom | `bloom` | light -> scattered light |
 //! | display | here | both -> the 8-bit picture |
 //!
-//! Runs over whole pictures, after all tiles. A frame that has neither keeps no light: its tiles
+//! Runs over whole pictures, after all tiles. A frame that has none of them keeps no light: its tiles
 //! develop their fragments at once. Here pixels are developed instead, so fragments are summed up as
 //! `light / (1 + brightest channel)`, which a bright edge leaves as smooth, and the sum is turned back.
 //! The formulas stand in `shaders/` under the same names as well.
 
 mod bloom;
 mod defocus;
+mod streak;
 
 use rayon::prelude::*;
 
@@ -21,10 +23,11 @@ use super::display;
 use super::samples::TILE;
 use super::shade::TileColor;
 use super::simd::{F32x8, LANES, Level, Vec3x8, kernel};
+use super::ways::TileWays;
 use crate::draw::DrawList;
 use crate::draw::abi::{Bloom, Grade};
 use crate::engine::noise;
-use crate::engine::optics::{blurs, scatters};
+use crate::engine::optics::{blurs, moves, scatters};
 use crate::plan::{PassPlan, StageTimes};
 
 /// Rows that a thread takes at a time.
@@ -75,7 +78,10 @@ pub(super) struct Optics {
     light: Planes<3>,
     /// How far out of focus it is: radius in pixels, negative before the focus.
     blur: Planes<1>,
+    /// How far what it shows goes, and how near that is; see [`super::ways`].
+    ways: Planes<3>,
     defocus: defocus::Buffers,
+    streak: streak::Buffers,
     bloom: bloom::Pyramid,
 }
 
@@ -85,6 +91,8 @@ pub(super) struct LightRow<'a> {
     light: [&'a mut [f32]; 3],
     /// Empty where nothing is out of focus.
     blur: &'a mut [f32],
+    /// Empty where nothing moves.
+    ways: [&'a mut [f32]; 3],
     stride: usize,
 }
 
@@ -94,12 +102,14 @@ impl Optics {
         let size = [list.view.width, list.view.height];
         self.light.resize(size);
         self.blur.resize(if blurs(list, plan).is_some() { size } else { [0; 2] });
+        self.ways.resize(if moves(list, plan).is_some() { size } else { [0; 2] });
         let stride = self.light.stride;
+        let mut ways = self.ways.chunks_mut(TILE).into_iter();
         let mut blur = self.blur.chunks_mut(TILE).into_iter();
         let rows = self.light.chunks_mut(TILE).into_iter();
         rows.map(|light| {
             let [blur] = blur.next().unwrap_or_default();
-            LightRow { light, blur, stride }
+            LightRow { light, blur, ways: ways.next().unwrap_or_default(), stride }
         })
         .collect()
     }
@@ -116,6 +126,11 @@ impl Optics {
         if let Some(defocus) = blurs(list, plan) {
             times.measure("depth of field", || {
                 self.defocus.spread(level, &defocus, &mut self.light, &self.blur);
+            });
+        }
+        if let Some(shutter) = moves(list, plan) {
+            times.measure("motion blur", || {
+                self.streak.draw_out(level, &shutter, &mut self.light, &self.ways);
             });
         }
         let bloom = scatters(list, plan);
@@ -163,6 +178,24 @@ impl LightRow<'_> {
                 *radius_px = defocus::radius_px(&defocus, nearest / list.view.near_m);
             }
             super::tile::copy_out::<S, f32, 1>(tile, size, width, self.blur, singles(&radius_px));
+        }
+    }
+}
+
+impl LightRow<'_> {
+    /// Whether it takes ways.
+    pub(super) fn takes_ways(&self) -> bool {
+        !self.ways[0].is_empty()
+    }
+
+    /// Takes the ways of a tile's pixels.
+    pub(super) fn take_ways<const S: usize>(
+        &mut self,
+        (tile, size): ([u32; 2], [usize; 2]),
+        ways: &TileWays,
+    ) {
+        for (row, slots) in self.ways.iter_mut().zip(ways) {
+            super::tile::copy_out::<S, f32, 1>(tile, size, self.stride as u32, row, singles(slots));
         }
     }
 }

@@ -28,6 +28,8 @@ pub(super) struct Placed {
     pub(super) first_vertex: Vec<usize>,
     /// Whether an object's transform turns its triangles inside out.
     pub(super) mirrored: Vec<bool>,
+    /// How far each vertex goes until the shutter closes, view space; of what moves alone.
+    pub(super) ways: Vec<[f32; 3]>,
     palette: Vec<Columns>,
 }
 
@@ -107,6 +109,46 @@ impl Placed {
             .min();
         match bad {
             Some(object) => Err(EngineError::NotFinite { object, what: "a placed vertex" }),
+            None => Ok(()),
+        }
+    }
+
+    /// Finds how far the placed vertices of the wanted objects go until the shutter closes.
+    pub(super) fn take_ways(
+        &mut self,
+        list: &DrawList,
+        wanted: &[bool],
+    ) -> Result<(), EngineError> {
+        self.ways.resize(self.vertices.len(), [0.0; 3]);
+        let (palette, mut rest) = (&self.palette, &mut self.ways[..]);
+        let mut batches = Vec::new();
+        for (object, span) in self.first_vertex.windows(2).enumerate() {
+            let (own, after) = rest.split_at_mut(span[1] - span[0]);
+            rest = after;
+            if let Some(end) = list.objects[object].end.as_ref().filter(|_| wanted[object]) {
+                let parts =
+                    self.vertices[span[0]..span[1]].chunks(BATCH).zip(own.chunks_mut(BATCH));
+                let firsts = (0..).step_by(BATCH);
+                batches.extend(firsts.zip(parts).map(|(first, part)| (object, end, first, part)));
+            }
+        }
+        let bad = batches
+            .into_par_iter()
+            .filter_map(|(object, end, first, (vertices, ways))| {
+                let mesh = &*list.objects[object].mesh;
+                let motion = if mesh.skin.is_empty() {
+                    let columns = columns(&end.view_from_model);
+                    Motion::Rigid(columns, columns)
+                } else {
+                    let range = end.palette.start as usize..end.palette.end as usize;
+                    Motion::Skinned(&palette[range], &mesh.skin)
+                };
+                let finite = find_ways(mesh, &motion, first, vertices, ways);
+                (!finite).then_some(object as u32)
+            })
+            .min();
+        match bad {
+            Some(object) => Err(EngineError::NotFinite { object, what: "a moved vertex" }),
             None => Ok(()),
         }
     }
@@ -247,6 +289,31 @@ fn move_body<const AVX2: bool, const NORMALS: bool>(
         }
     }
     zero.0.iter().all(|&z| z == 0.0)
+}
+
+/// How far vertices go to where a motion takes them; false if a result is not finite.
+fn find_ways(
+    mesh: &Mesh,
+    motion: &Motion<'_>,
+    first: usize,
+    vertices: &[Vertex],
+    ways: &mut [[f32; 3]],
+) -> bool {
+    let last = mesh.positions.len() - 1;
+    let mut finite = true;
+    for (i, (vertex, way)) in (first..).zip(vertices.iter().zip(ways)) {
+        let i = i.min(last);
+        let to = match motion {
+            Motion::Rigid(position, _) => transform(position, mesh.positions[i], 1.0),
+            Motion::Skinned(palette, skin) => {
+                transform(&blend(palette, &skin[i]), mesh.positions[i], 1.0)
+            }
+        };
+        let from = vertex.position();
+        *way = [0, 1, 2].map(|axis| to[axis] - from[axis]);
+        finite &= way.iter().all(|v| v.is_finite());
+    }
+    finite
 }
 
 /// The weighted mean of up to four transforms.

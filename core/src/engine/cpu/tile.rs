@@ -17,8 +17,10 @@ use super::resolve::{Resolved, SampleObjects, objects_of_samples, resolve};
 use super::samples::{BLOCK, Layout, TILE};
 use super::shade::{DrawnSurface, Reaching, Stage, Surface, TileColor, shade};
 use super::simd::{F32x8, LANES, Level, kernel};
+use super::ways::{TileWays, ways_of_tile};
 use super::{develop, display, skin};
 use crate::draw::DrawList;
+use crate::draw::abi::Shutter;
 use crate::plan::{ObjectSamples, StageTimes};
 
 /// Steps whose time is kept apart.
@@ -27,14 +29,15 @@ enum Step {
     Raster,
     Fragments,
     Shade,
+    Ways,
     Display,
     Resolve,
     Reduce,
 }
 
 impl Step {
-    const NAMES: [&'static str; 6] =
-        ["raster", "fragments", "shade", "display", "resolve", "reduce"];
+    const NAMES: [&'static str; 7] =
+        ["raster", "fragments", "shade", "ways", "display", "resolve", "reduce"];
 }
 
 /// What a thread works in; lives on from frame to frame.
@@ -47,6 +50,7 @@ pub(super) struct Scratch {
     fragments: Fragments,
     reaching: Reaching,
     color: Box<TileColor>,
+    ways: Box<TileWays>,
     /// Grain by pixel slot, 1/255.
     noise: Box<[f32; TILE * TILE]>,
     /// The sensor's noise by channel and pixel slot.
@@ -69,6 +73,7 @@ impl Default for Scratch {
             fragments: Fragments::default(),
             reaching: Reaching::default(),
             color: Box::new([[0.0; TILE * TILE]; 3]),
+            ways: Box::new([[0.0; TILE * TILE]; 3]),
             noise: Box::new([0.0; TILE * TILE]),
             sensor: Box::new([[0.0; TILE * TILE]; 3]),
             bytes: Box::new([[0; 3]; TILE * TILE]),
@@ -119,6 +124,8 @@ pub(super) struct TilePass<'a> {
     pub(super) by_tile: &'a ChunksByTile,
     /// Present when the picture is wanted.
     pub(super) shading: Option<Shading<'a>>,
+    /// Present where what moves is drawn out.
+    pub(super) shutter: Option<Shutter>,
     pub(super) resolves: bool,
     pub(super) reduces: bool,
 }
@@ -160,6 +167,13 @@ impl TilePass<'_> {
         });
         if let Some(shading) = &self.shading {
             self.shade::<S>(shading, origin_px, lens, scratch);
+            if let Some(shutter) = self.shutter.as_ref().filter(|_| row.light.takes_ways()) {
+                scratch.measure(Step::Ways, |s| {
+                    let samples = (&s.ids[..], &s.depth[..]);
+                    ways_of_tile::<S>(self, shutter, origin_px, lens, samples, &mut s.ways);
+                    row.light.take_ways::<S>((tile, size), &s.ways);
+                });
+            }
             let grade = &self.list.grade;
             scratch.measure(Step::Display, |s| {
                 if shading.stage.develop.keeps() {

@@ -46,8 +46,9 @@ pub struct Frame {
     pub blur_halvings: u32,
     pub bloom_share: f32,
     pub bloom_spread: f32,
-    pub pad5: u32,
-    pub pad6: u32,
+    pub longest_px: f32,
+    pub way_tile: u32,
+    pub end_from_view: [[f32; 4]; 3],
     pub environment_from_view: [[f32; 4]; 3],
     pub environment_levels: [[u32; 4]; 3],
     pub environment_irradiance: [[f32; 4]; 10],
@@ -83,6 +84,7 @@ pub struct VertexBatch {
     pub rigid: u32,
     pub in_view: u32,
     pub casts: u32,
+    pub end: u32,
 }
 
 /// Up to 64 triangles of one draw.
@@ -107,7 +109,7 @@ pub struct Vertex {
     pub position: [f32; 3],
     pub normal: u32,
     pub uv: [f32; 2],
-    pub pad: [u32; 2],
+    pub way: [u32; 2],
 }
 
 /// A projected vertex.
@@ -238,6 +240,9 @@ pub struct ObjectSums {
     pub low: [u32; 2],
     pub high: [u32; 2],
 }
+
+/// A place in a list that does not exist.
+pub const NOTHING: u32 = u32::MAX;
 
 /// [`Step::larger_first`] of the light of pixels.
 pub const LIGHT_OF_PIXELS: u32 = u32::MAX;

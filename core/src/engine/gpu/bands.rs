@@ -155,7 +155,7 @@ impl State {
                 }
             }
             recorder.visibility();
-            recorder.outputs(plan);
+            recorder.outputs(plan, &packed.frame);
         })
     }
 

@@ -141,6 +141,9 @@ const fn name(resource: Resource) -> &'static str {
         | Resource::Layers
         | Resource::Widest
         | Resource::Gathered
+        | Resource::Ways
+        | Resource::Longest
+        | Resource::DrawnOut
         | Resource::Scattered
         | Resource::Steps
         | Resource::Step => "graphics memory of light that spreads over the picture",

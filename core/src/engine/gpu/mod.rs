@@ -8,6 +8,7 @@
 //! | visibility | `raster` | -> triangle and depth of each sample; behind a lens by the tables of `lens` |
 //! | shade, display | `shade` | -> the 8-bit picture |
 //! | depth of field | `split`, `gather`, `compose` | light, where it is kept -> light |
+//! | motion blur | `way`, `longest`, `streak` | samples, light -> light |
 //! | bloom | `halve`, `widen` | light -> scattered light |
 //! | display | `finish` | both -> the 8-bit picture |
 //! | resolve, reduce | `resolve`, `reduce` | -> ids, distances, counts, extents |
@@ -67,7 +68,7 @@ use self::present::Presenter;
 use self::readback::{Counted, Readback};
 use self::record::Clock;
 use self::stage::Resource;
-use super::optics::scatters;
+use super::optics::{moves, scatters};
 use super::{Engine, EngineError, input, resized};
 use crate::draw::DrawList;
 use crate::draw::abi::MAX_BLOCKERS;
@@ -307,6 +308,9 @@ impl State {
             self.packed.fill(list, &wanted, shadow, &places);
             if scatters(list, plan).is_none() {
                 self.packed.frame.bloom_share = 0.0;
+            }
+            if moves(list, plan).is_none() {
+                self.packed.frame.longest_px = 0.0;
             }
             self.write(list, shadow)
         })

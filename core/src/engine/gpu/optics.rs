@@ -6,7 +6,9 @@ use super::device::Device;
 use super::stage::Resource;
 use crate::draw::DrawList;
 use crate::engine::EngineError;
-use crate::engine::optics::{bloom_levels, blur_level, blurs, keeps_light, level_size, scatters};
+use crate::engine::optics::{
+    bloom_levels, blur_level, blurs, keeps_light, level_size, moves, scatters, way_tile,
+};
 use crate::plan::PassPlan;
 
 /// What is known of them.
@@ -39,6 +41,12 @@ impl Optics {
             let squares = layer.map(|side| side.div_ceil(SQUARE));
             buffers.ensure(device, Resource::Widest, texels(squares) * 8)?;
             buffers.ensure(device, Resource::Gathered, texels(layer) * 16)?;
+        }
+        if let Some(shutter) = moves(list, plan) {
+            buffers.ensure(device, Resource::Ways, texels(size) * 8)?;
+            let tiles = size.map(|side| side.div_ceil(way_tile(&shutter)));
+            buffers.ensure(device, Resource::Longest, texels(tiles) * 8)?;
+            buffers.ensure(device, Resource::DrawnOut, texels(size) * 8)?;
         }
         let mut scattered = 0;
         if scatters(list, plan).is_some() {

@@ -4,7 +4,7 @@ use half::f16;
 
 use super::abi::{
     self, Blocker, CUTOUT_SHIFT, DOUBLE_SIDED, Frame, Light, MAP_COLOR, MAP_PRESENT, MIRRORED,
-    SMOOTH, Surface, TRIANGLE_BATCH, Target, TriangleBatch, VERTEX_BATCH, VERTEX_WORDS,
+    NOTHING, SMOOTH, Surface, TRIANGLE_BATCH, Target, TriangleBatch, VERTEX_BATCH, VERTEX_WORDS,
     VertexBatch,
 };
 use crate::draw::DrawList;
@@ -145,6 +145,14 @@ impl Packed {
             } else {
                 object.palette.start * 3
             };
+            let end = object.end.as_ref().map_or(NOTHING, |end| {
+                let first = self.palette.len() as u32;
+                if rigid {
+                    self.palette.extend(end.view_from_model);
+                    return first;
+                }
+                end.palette.start * 3
+            });
             let count = object.mesh.positions.len() as u32;
             for first in (0..count).step_by(VERTEX_BATCH as usize) {
                 self.vertex_batches.push(VertexBatch {
@@ -156,6 +164,7 @@ impl Packed {
                     rigid: rigid.into(),
                     in_view: wanted.seen[index].into(),
                     casts: wanted.casts[index].into(),
+                    end,
                 });
             }
             self.vertices += count;
@@ -281,6 +290,11 @@ fn frame(list: &DrawList, shadow: bool) -> Frame {
         frame.blur_px = defocus.at_infinity_px;
         frame.blur_limit_px = defocus.largest_px;
         frame.blur_halvings = optics::blur_level(defocus);
+    }
+    if let Some(shutter) = &list.shutter {
+        frame.longest_px = shutter.longest_px;
+        frame.way_tile = optics::way_tile(shutter);
+        frame.end_from_view = shutter.end_from_view.map(|[x, y, z]| [x, y, z, 0.0]);
     }
     if let Some(bloom) = list.grade.bloom {
         (frame.bloom_share, frame.bloom_spread) = (bloom.share, bloom.spread);

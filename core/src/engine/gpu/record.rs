@@ -140,7 +140,7 @@ impl Recorder<'_> {
     }
 
     /// Makes what the plan asks for from the samples.
-    pub fn outputs(&mut self, plan: &PassPlan) {
+    pub fn outputs(&mut self, plan: &PassPlan, frame: &Frame) {
         let Target { width, band_height, .. } = *self.target;
         let tiles = [width.div_ceil(TILE), band_height.div_ceil(TILE), 1];
         if plan.runs(Pass::Resolve) {
@@ -152,6 +152,9 @@ impl Recorder<'_> {
         }
         if plan.runs(Pass::Shade) {
             self.run(if self.keeps { Stage::KeepLight } else { Stage::Shade }, tiles);
+            if frame.longest_px > 0.0 {
+                self.run(Stage::Way, tiles);
+            }
         }
     }
 
@@ -165,6 +168,14 @@ impl Recorder<'_> {
             self.run(Stage::Split, layers);
             self.run(Stage::Gather, layers);
             self.run(Stage::Compose, squares(frame.size));
+        }
+        if frame.longest_px > 0.0 {
+            let [columns, rows] = frame.size.map(|side| side.div_ceil(frame.way_tile));
+            self.run(Stage::Longest, [columns, rows, 1]);
+            self.run(Stage::Streak, squares(frame.size));
+            let [from, to] = [Resource::DrawnOut, Resource::Light].map(|r| self.buffers.get(r));
+            let bytes = u64::from(frame.size[0]) * u64::from(frame.size[1]) * 8;
+            self.encoder.copy_buffer_to_buffer(from, 0, to, 0, Some(bytes));
         }
         if plan.runs(Pass::Bloom) {
             for (index, step) in steps.iter().enumerate() {

@@ -40,11 +40,11 @@ macro_rules! shading {
 
 /// The files of shading, with the one that knows rays through pixels.
 macro_rules! shading_files {
-    ($rays:literal) => {
+    ($($rays:literal),+) => {
         &[
             ABI,
             file!("shared/texture.wgsl"),
-            file!($rays),
+            $(file!($rays)),+,
             NORMAL,
             file!("shared/surface.wgsl"),
             file!("shared/material.wgsl"),
@@ -105,6 +105,10 @@ pub enum Resource {
     Layers,
     Widest,
     Gathered,
+    /// Motion blur: ways of pixels, the longest of tiles, and light drawn out.
+    Ways,
+    Longest,
+    DrawnOut,
     /// Levels of scattered light; all [`super::abi::Step`]s between them, and the one in hand.
     Scattered,
     Steps,
@@ -155,6 +159,9 @@ pub enum Stage {
     Split,
     Gather,
     Compose,
+    Way,
+    Longest,
+    Streak,
     Halve,
     Widen,
     Finish,
@@ -164,11 +171,12 @@ pub enum Stage {
     LensRaster,
     LensShade,
     LensKeepLight,
+    LensWay,
 }
 
 impl Stage {
     /// All stages in the order in which a frame runs them.
-    pub const ALL: [Self; 28] = [
+    pub const ALL: [Self; 32] = [
         Self::Skin,
         Self::Setup,
         Self::Clip,
@@ -189,6 +197,9 @@ impl Stage {
         Self::Split,
         Self::Gather,
         Self::Compose,
+        Self::Way,
+        Self::Longest,
+        Self::Streak,
         Self::Halve,
         Self::Widen,
         Self::Finish,
@@ -197,6 +208,7 @@ impl Stage {
         Self::LensRaster,
         Self::LensShade,
         Self::LensKeepLight,
+        Self::LensWay,
     ];
 
     /// What runs in its place behind a lens.
@@ -207,6 +219,7 @@ impl Stage {
             Self::Raster => Self::LensRaster,
             Self::Shade => Self::LensShade,
             Self::KeepLight => Self::LensKeepLight,
+            Self::Way => Self::LensWay,
             other => other,
         }
     }
@@ -225,6 +238,7 @@ impl Stage {
             Self::Reduce => "reduce",
             Self::Shade | Self::KeepLight | Self::LensShade | Self::LensKeepLight => "shade",
             Self::Split | Self::Gather | Self::Compose => "depth of field",
+            Self::Way | Self::LensWay | Self::Longest | Self::Streak => "motion blur",
             Self::Halve | Self::Widen => "bloom",
             Self::Finish => "display",
         }
@@ -248,6 +262,8 @@ impl Stage {
                 | Self::Reduce
                 | Self::Shade
                 | Self::KeepLight
+                | Self::Way
+                | Self::LensWay
                 | Self::LensRaster
                 | Self::LensShade
                 | Self::LensKeepLight
@@ -410,6 +426,31 @@ impl Stage {
                 &[(R::Frame, Uniform), (R::Layers, Read), (R::Widest, Read), (R::Gathered, Write)]
             }
             Self::Compose => &[(R::Frame, Uniform), (R::Gathered, Read), (R::Light, Write)],
+            Self::Way => &[
+                (R::Frame, Uniform),
+                (R::Target, Uniform),
+                (R::Primitives, Read),
+                (R::Vertices, Read),
+                (R::Samples, Read),
+                (R::Ways, Write),
+            ],
+            Self::LensWay => &[
+                (R::Frame, Uniform),
+                (R::Target, Uniform),
+                (R::Primitives, Read),
+                (R::Vertices, Read),
+                (R::Samples, Read),
+                (R::Ways, Write),
+                (R::Rays, Read),
+            ],
+            Self::Longest => &[(R::Frame, Uniform), (R::Ways, Write), (R::Longest, Write)],
+            Self::Streak => &[
+                (R::Frame, Uniform),
+                (R::Light, Read),
+                (R::Ways, Read),
+                (R::Longest, Read),
+                (R::DrawnOut, Write),
+            ],
             Self::Halve => {
                 &[(R::Frame, Uniform), (R::Step, Uniform), (R::Light, Read), (R::Scattered, Write)]
             }
@@ -481,6 +522,16 @@ impl Stage {
             Self::Split => &[ABI, LIGHT_OF_PIXELS, DISK, file!("split.wgsl")],
             Self::Gather => &[ABI, DISK, file!("gather.wgsl")],
             Self::Compose => &[ABI, LIGHT_OF_PIXELS, DISK, file!("compose.wgsl")],
+            Self::Way => &[ABI, file!("shared/ray.wgsl"), WAY, file!("way.wgsl")],
+            Self::LensWay => &[
+                ABI,
+                file!("shared/way_rays.wgsl"),
+                file!("shared/lens_ray.wgsl"),
+                WAY,
+                file!("way.wgsl"),
+            ],
+            Self::Longest => &[ABI, WAY, file!("longest.wgsl")],
+            Self::Streak => &[ABI, LIGHT_OF_PIXELS, WAY, file!("streak.wgsl")],
             Self::Halve => &[ABI, LIGHT_OF_PIXELS, file!("halve.wgsl")],
             Self::Widen => &[ABI, LIGHT_OF_PIXELS, DRAWN_OUT, file!("widen.wgsl")],
             Self::Finish => &[
@@ -492,7 +543,9 @@ impl Stage {
                 file!("finish.wgsl"),
             ],
             Self::Shade | Self::KeepLight => shading_files!("shared/ray.wgsl"),
-            Self::LensShade | Self::LensKeepLight => shading_files!("shared/lens_ray.wgsl"),
+            Self::LensShade | Self::LensKeepLight => {
+                shading_files!("shared/shade_rays.wgsl", "shared/lens_ray.wgsl")
+            }
         }
     }
 }
@@ -510,6 +563,7 @@ const TRIANGLE: File = file!("shared/triangle.wgsl");
 const LIGHT_OF_PIXELS: File = file!("shared/light_of_pixels.wgsl");
 const DISK: File = file!("shared/disk.wgsl");
 const DRAWN_OUT: File = file!("shared/drawn_out.wgsl");
+const WAY: File = file!("shared/way.wgsl");
 const EDGE: File = file!("shared/edge.wgsl");
 const KEPT: File = file!("shared/kept.wgsl");
 const CUTOUT: File = file!("shared/cutout.wgsl");

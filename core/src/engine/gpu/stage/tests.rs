@@ -8,8 +8,9 @@ use wgpu::naga::valid::{ValidationFlags, Validator};
 use wgpu::naga::{AddressSpace, Module, StorageAccess, TypeInner};
 
 use super::*;
-use crate::draw::abi::{MAX_BLOCKERS, Material};
+use crate::draw::abi::{MAX_BLOCKERS, Material, Shutter};
 use crate::engine::gpu::abi;
+use crate::engine::optics::{MOST_TAPS, MOST_WAY_PX, WAY_PER_PX};
 
 fn modules() -> impl Iterator<Item = (String, Stage, Module)> {
     Stage::ALL.into_iter().flat_map(|stage| {
@@ -114,8 +115,9 @@ fn shared_structs_are_laid_out_alike() {
             blur_halvings,
             bloom_share,
             bloom_spread,
-            pad5,
-            pad6,
+            longest_px,
+            way_tile,
+            end_from_view,
             environment_from_view,
             environment_levels,
             environment_irradiance,
@@ -134,7 +136,7 @@ fn shared_structs_are_laid_out_alike() {
             vertex_batch_count,
             pad0,
         }),
-        layout!(VertexBatch { object, source, count, first, palette, rigid, in_view, casts }),
+        layout!(VertexBatch { object, source, count, first, palette, rigid, in_view, casts, end }),
         layout!(TriangleBatch {
             draw,
             object,
@@ -146,7 +148,7 @@ fn shared_structs_are_laid_out_alike() {
             double_sided,
             cutout,
         }),
-        layout!(Vertex { position, normal, uv, pad }),
+        layout!(Vertex { position, normal, uv, way }),
         layout!(ScreenVertex { x, y, depth, pad }),
         layout!(Primitive { x, inverse_area, y, order, depth, flags, corners, draw }),
         layout!(Counters { primitives, large, entries, bad_object, crossing, pad0, pad1, pad2 }),
@@ -219,8 +221,15 @@ fn shared_constants_are_the_same() {
     assert!(disk.contains(&format!("const SQUARE: u32 = {}u;", abi::SQUARE)));
     let split = include_str!("../../../../../shaders/split.wgsl");
     assert!(split.contains(&format!("array<array<u32, {}>>", abi::LAYER_WORDS)));
+    let streak = include_str!("../../../../../shaders/streak.wgsl");
+    assert!(streak.contains(&format!("const MOST_TAPS: f32 = {MOST_TAPS}.0;")));
+    assert!(streak.contains(&format!("const STILL_PX: f32 = {:?};", Shutter::STILL_PX)));
+    let way = include_str!("../../../../../shaders/shared/way.wgsl");
+    assert!(way.contains(&format!("const PER_PX: f32 = {WAY_PER_PX:?};")));
+    assert!(way.contains(&format!("const MOST_PX: f32 = {MOST_WAY_PX:?};")));
     assert_eq!(abi::LIGHT_OF_PIXELS, u32::MAX);
     assert!(text.contains("const NOTHING: u32 = 0xffffffffu;"));
+    assert_eq!(abi::NOTHING, 0xffff_ffff);
     let material = include_str!("../../../../../shaders/shared/material.wgsl");
     assert!(material.contains(&format!("const GLOSSY: f32 = {};", Material::GLOSSY)));
     let skin = include_str!("../../../../../shaders/skin.wgsl");
