@@ -33,6 +33,12 @@ fn base() -> Value {
     let share = json!({"uniform": [0.1, 0.9]});
     let gap = json!({"uniform": [0.005, 0.01]});
     let hsv = json!({"hsv": unit});
+    let shutter = json!({
+        "enabled": true,
+        "shutter_s": 0.02,
+        "velocity_m_s": [0, 0, 0],
+        "angular_velocity_deg_s": [0, 0, 0],
+    });
     for (path, law) in [
         ("people.identities", Value::Null),
         ("lights.environment.image.source", json!("sky")),
@@ -52,6 +58,7 @@ fn base() -> Value {
         ("people.wardrobe.outer.looseness_m", gap),
         ("people.wardrobe.outer.color", hsv),
         ("people.wardrobe.shoes.color", unit.clone()),
+        ("camera.motion_blur", shutter),
         ("people.wardrobe.shoes.sock_color", unit),
         ("people.pose.blend.share", share.clone()),
         ("people.pose.variation", share),
