@@ -34,7 +34,7 @@ struct Places {
 }
 
 // The two pixels that a place lies between, and how much of it is the second.
-struct Two {
+struct Between {
     first: Pixel,
     second: Pixel,
     part: f32,
@@ -95,11 +95,11 @@ fn pixel_at(pixel: vec2<u32>, off: vec2<f32>) -> Pixel {
     return Pixel(unpacked_light(light[place]).xyz, unpacked_way(ways[place]));
 }
 
-fn pixels_at(pixel: vec2<u32>, places: Places, index: i32) -> Two {
+fn pixels_at(pixel: vec2<u32>, places: Places, index: i32) -> Between {
     let off = places.step * f32(index);
     let low = floor(off);
     let part = off - low;
-    return Two(pixel_at(pixel, low), pixel_at(pixel, low + ceil(part)), max(part.x, part.y));
+    return Between(pixel_at(pixel, low), pixel_at(pixel, low + ceil(part)), max(part.x, part.y));
 }
 
 // How much of a pixel that lies before another passes over it.

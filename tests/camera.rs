@@ -13,6 +13,7 @@ use figurant_core::library::Library;
 use figurant_core::plan::{Output, PassPlan, SceneFacts, StageTimes};
 use figurant_core::sampling::Sampler;
 use figurant_core::scene::{Camera, MotionBlur, Scene, ToneCurve};
+use figurant_tests::light::{linear, psnr};
 use glam::DVec3;
 
 /// The distance in focus is that of the nearest face in the picture, wherever people stand upright.
@@ -81,9 +82,8 @@ fn linear_light(scene: &Scene, library: &Library) -> Vec<f64> {
     let drawn = draw(scene, library, &Cast::default(), &options).unwrap();
     let plan = PassPlan::new(&[Output::Rgb].into(), SceneFacts::ANY);
     let frame = CpuEngine::default().render(&drawn.list, &plan, &mut StageTimes::default());
-    let linear = |v: f64| if v <= 0.040_45 { v / 12.92 } else { ((v + 0.055) / 1.055).powf(2.4) };
     let picture = frame.unwrap().picture.unwrap();
-    picture.into_iter().map(|v| linear(f64::from(v) / 255.0)).collect()
+    picture.into_iter().map(linear).collect()
 }
 
 /// The scene some time later, its shutter open for no time.
@@ -96,11 +96,6 @@ fn later(scene: &Scene, library: &Library, time_s: f64) -> Scene {
         person.pose.phase = if clip.loops { phase.rem_euclid(1.0) } else { phase.clamp(0.0, 1.0) };
     }
     scene
-}
-
-fn psnr(a: &[f64], b: &[f64]) -> f64 {
-    let squares: f64 = a.iter().zip(b).map(|(a, b)| (a - b) * (a - b)).sum();
-    -10.0 * (squares / a.len() as f64).log10()
 }
 
 /// What an open shutter blurs is near the mean of many shutters that open one after the other.

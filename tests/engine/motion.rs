@@ -5,6 +5,7 @@ use figurant_core::draw::{DrawList, rows};
 use figurant_core::library::texture::{Encoding, Texture, color_from_srgb8};
 use figurant_core::plan::{Frame, Output};
 use figurant_tests::drawlists::{add, empty, view};
+use figurant_tests::light::green;
 use figurant_tests::meshes;
 use glam::{DAffine3, DMat3, DVec3};
 use std::sync::Arc;
@@ -23,11 +24,8 @@ fn lit() -> DrawList {
     list
 }
 
-/// Linear light of the green channel.
 fn light(frame: &Frame) -> Vec<f64> {
-    let pixels = frame.picture.as_ref().unwrap().as_chunks::<3>().0;
-    let linear = |v: f64| if v <= 0.040_45 { v / 12.92 } else { ((v + 0.055) / 1.055).powf(2.4) };
-    pixels.iter().map(|p| linear(f64::from(p[1]) / 255.0)).collect()
+    green(frame.picture.as_ref().unwrap())
 }
 
 fn shutter(longest_px: f64) -> Shutter {

@@ -5,6 +5,7 @@ use figurant_core::draw::abi::{Bloom, Defocus, Material, ToneCurve};
 use figurant_core::library::texture::{Encoding, Texture, color_from_srgb8};
 use figurant_core::plan::{Frame, Output};
 use figurant_tests::drawlists::{add, empty, view};
+use figurant_tests::light::{green, psnr};
 use figurant_tests::meshes;
 use glam::{DAffine3, DVec2, DVec3};
 use std::sync::Arc;
@@ -23,11 +24,8 @@ fn dark(samples: u32) -> DrawList {
     list
 }
 
-/// Linear light of the green channel.
 fn light(frame: &Frame) -> Vec<f64> {
-    let pixels = frame.picture.as_ref().unwrap().as_chunks::<3>().0;
-    let linear = |v: f64| if v <= 0.040_45 { v / 12.92 } else { ((v + 0.055) / 1.055).powf(2.4) };
-    pixels.iter().map(|p| linear(f64::from(p[1]) / 255.0)).collect()
+    green(frame.picture.as_ref().unwrap())
 }
 
 fn at(i: usize) -> DVec2 {
@@ -146,11 +144,6 @@ fn by_many_pinholes(list: &DrawList, defocus: &Defocus) -> Vec<f64> {
         sum.iter_mut().zip(light(&frame)).for_each(|(sum, v)| *sum += v / f64::from(count));
     }
     sum
-}
-
-fn psnr(a: &[f64], b: &[f64]) -> f64 {
-    let squares: f64 = a.iter().zip(b).map(|(a, b)| (a - b) * (a - b)).sum();
-    -10.0 * (squares / a.len() as f64).log10()
 }
 
 #[test]

@@ -2,6 +2,7 @@
 
 pub mod crowd;
 pub mod drawlists;
+pub mod light;
 pub mod limbs;
 pub mod meshes;
 pub mod oracle;
